@@ -1,0 +1,135 @@
+#pragma once
+/// The scene as every room sees it: triangles in world space with their materials, cameras and lights.
+///
+/// Frames and units: metres, radians, +Y up, right-handed (glTF 2.0). Colours are linear Rec.709. Node transforms are
+/// applied on load, because the transfer of a static scene is tied to where each vertex stands in the world.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace chiaro {
+
+inline constexpr int kNone = -1;  ///< "no such texture, material, ..." in every index below
+
+/// An image as its file holds it, so that a baked scene carries the artist's own bytes.
+struct EncodedImage {
+  std::string name;
+  std::string mimeType;             ///< image/png or image/jpeg
+  std::vector<std::uint8_t> bytes;
+};
+
+enum class Wrap { repeat, mirroredRepeat, clampToEdge };
+
+struct Texture {
+  int image = kNone;                ///< index into Scene::images
+  Wrap wrapS = Wrap::repeat;
+  Wrap wrapT = Wrap::repeat;
+  bool nearest = false;             ///< magnification without interpolation
+};
+
+enum class AlphaMode { opaque, mask, blend };
+
+/// glTF 2.0 metallic-roughness material with KHR_materials_anisotropy; a texture is an index into Scene::textures and
+/// reads TEXCOORD_0. Colour textures are sRGB-encoded, the others linear.
+struct Material {
+  std::string name;
+  glm::vec4 baseColorFactor{1.0f};
+  int baseColorTexture = kNone;
+  float metallicFactor = 1.0f;
+  float roughnessFactor = 1.0f;          ///< perceptual roughness; alpha = roughness^2
+  int metallicRoughnessTexture = kNone;  ///< G roughness, B metallic
+  int normalTexture = kNone;             ///< tangent space, +Y up (OpenGL)
+  float normalScale = 1.0f;
+  int occlusionTexture = kNone;          ///< carried through; unused, as the transfer knows the occlusion itself
+  float occlusionStrength = 1.0f;
+  glm::vec3 emissiveFactor{0.0f};        ///< times KHR_materials_emissive_strength
+  int emissiveTexture = kNone;
+  AlphaMode alphaMode = AlphaMode::opaque;
+  float alphaCutoff = 0.5f;
+  bool doubleSided = false;
+  float anisotropyStrength = 0.0f;       ///< 0..1: alpha along the rotated tangent is mix(alpha, 1, strength^2)
+  float anisotropyRotation = 0.0f;       ///< radians, counter-clockwise from the tangent
+  int anisotropyTexture = kNone;         ///< RG direction in [-1,1], B strength
+};
+
+/// One draw: an indexed triangle list with one material. Attribute arrays are empty or as long as `positions`.
+struct Primitive {
+  std::string name;
+  int mesh = 0;                            ///< primitives of one source mesh instance share this number (Scene::meshNames)
+  int material = kNone;                    ///< index into Scene::materials; kNone is the glTF default material
+  std::vector<glm::vec3> positions;        ///< world space, metres
+  std::vector<glm::vec3> normals;          ///< unit, world space
+  std::vector<glm::vec4> tangents;         ///< xyz unit, world space; w = +-1 handedness: bitangent = cross(n, t) * w
+  std::vector<glm::vec2> texcoords;        ///< TEXCOORD_0, (0,0) top left of the image
+  std::vector<std::uint32_t> indices;      ///< 3 per triangle, counter-clockwise from the front
+
+  std::size_t triangleCount() const { return indices.size() / 3; }
+};
+
+struct Camera {
+  std::string name;
+  glm::mat4 worldFromCamera{1.0f};  ///< rigid; looks along its -Z, +Y up
+  bool perspective = true;
+  float verticalFov = 0.8f;         ///< radians (perspective)
+  float verticalExtent = 1.0f;      ///< half the height of the view, metres (orthographic)
+  float nearPlane = 0.01f;
+  float farPlane = 1000.0f;
+};
+
+enum class LightType { directional, point, spot };
+
+/// KHR_lights_punctual.
+struct Light {
+  std::string name;
+  LightType type = LightType::directional;
+  glm::vec3 color{1.0f};
+  float intensity = 1.0f;                 ///< lux (directional), candela (point, spot)
+  float range = std::numeric_limits<float>::infinity();
+  float innerConeAngle = 0.0f;            ///< radians (spot)
+  float outerConeAngle = 0.785398163f;
+  glm::vec3 position{0.0f};
+  glm::vec3 direction{0.0f, 0.0f, -1.0f};  ///< the way the light travels, unit
+};
+
+struct Scene {
+  std::vector<std::string> meshNames;
+  std::vector<Primitive> primitives;
+  std::vector<Material> materials;
+  std::vector<Texture> textures;
+  std::vector<EncodedImage> images;
+  std::vector<Camera> cameras;
+  std::vector<Light> lights;
+
+  std::size_t vertexCount() const;
+  std::size_t triangleCount() const;
+};
+
+/// The material a primitive without one gets (glTF 2.0, 3.9.6).
+const Material& materialOf(const Scene& scene, const Primitive& primitive);
+
+struct Bounds {
+  glm::vec3 lower{std::numeric_limits<float>::infinity()};
+  glm::vec3 upper{-std::numeric_limits<float>::infinity()};
+
+  bool empty() const { return !(lower.x <= upper.x); }
+  glm::vec3 center() const { return 0.5f * (lower + upper); }
+  float diagonal() const { return empty() ? 0.0f : glm::length(upper - lower); }
+};
+
+/// Of all vertices that a triangle uses.
+Bounds boundsOf(const Scene& scene);
+
+/// The scene's first camera; without one, a three-quarter view from above that holds the whole scene in a frame of the
+/// given width over height.
+Camera defaultCamera(const Scene& scene, float aspect);
+
+/// A perspective camera at `eye` that looks at `target` with +Y up (or +Z when it looks along Y). near and far are set
+/// from the scene's bounds.
+Camera lookAt(glm::vec3 eye, glm::vec3 target, float verticalFov, const Bounds& bounds);
+
+}  // namespace chiaro
