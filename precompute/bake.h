@@ -1,0 +1,59 @@
+#pragma once
+/// From a scene to its compressed radiance transfer.
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "assets/scene/scene.h"
+#include "assets/transfer/transfer.h"
+
+namespace chiaro {
+
+struct BakeSettings {
+  int resolution = 64;              ///< octahedral texels a side of the traced and stored sphere, 16..256
+  int terms = 48;                   ///< PCA terms, 1..256 (fewer are kept when the scene needs fewer)
+  int directionCount = 32;          ///< fixed broad lobes per vertex, a multiple of 4, 8..64
+  float directionSharpness = 32.0f;
+  float creaseAngle = 1.0471976f;   ///< radians; sharper edges are split where the file has no normals
+  std::uint32_t seed = 0;
+  int threads = 0;                  ///< 0: all cores. The result never depends on it.
+};
+
+/// What the input mesh needed before it could be baked; all counts.
+struct RepairReport {
+  std::size_t weldedVertices = 0;        ///< vertices merged with an identical one
+  std::size_t isolatedVertices = 0;      ///< used by no triangle: dropped
+  std::size_t degenerateTriangles = 0;   ///< zero area or a repeated corner: dropped
+  std::size_t duplicateTriangles = 0;    ///< same corners, same winding: dropped
+  std::size_t nonManifoldEdges = 0;      ///< kept; split for the half-edge mesh
+  std::size_t boundaryEdges = 0;
+  std::size_t normalsComputed = 0;       ///< vertices that got a normal
+  std::size_t normalsRepaired = 0;       ///< zero or not unit in the file
+  std::size_t tangentsComputed = 0;
+};
+
+struct BakeReport {
+  std::size_t vertices = 0;
+  std::size_t triangles = 0;
+  std::uint64_t raysTraced = 0;
+  int terms = 0;
+  double bytesPerVertex = 0.0;
+  struct { double visibility = 0, ssdf = 0, compression = 0, total = 0; } seconds;
+  RepairReport repairs;
+  /// Error of what is stored, measured against the traced signal over all vertices (names in docs/programs.md):
+  /// "ssdf_rms_radians", "ssdf_sign_share", "ssdf_quantisation_rms_radians", "visible_fraction_mean_abs_<lambda>", ...
+  std::vector<std::pair<std::string, double>> error;
+};
+
+/// stage name, share done in [0,1]. Called from one thread at a time.
+using ProgressHandler = std::function<void(const std::string& stage, double done)>;
+
+/// Repairs, traces, transforms, compresses. Same bytes for any thread count. Throws Error for a scene with no triangle.
+BakedScene bake(const Scene& scene, const BakeSettings& settings, BakeReport& report, const ProgressHandler& progress = {});
+
+/// Only the repair, welding, normals and tangents of the above (the reference renderer and the viewer see the same mesh).
+Scene prepareScene(const Scene& scene, float creaseAngle, RepairReport& report);
+
+}  // namespace chiaro

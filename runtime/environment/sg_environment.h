@@ -1,0 +1,57 @@
+#pragma once
+/// An environment as the runtime lights with it: a pyramid of SG-prefiltered radiance and a few SG lights (Wang et al. 2009,
+/// section 5; ALGORITHMS 4.1, 4.2).
+
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "assets/builtin/environment.h"
+
+namespace chiaro {
+
+/// radiance(w) = amplitude * exp(sharpness * (dot(axis, w) - 1))
+struct SgLight {
+  glm::vec3 axis{0, 0, 1};
+  float sharpness = 0.0f;
+  glm::vec3 amplitude{0.0f};
+};
+
+/// One prefiltered sphere: mean radiance under a normalised SG of this sharpness about each texel's direction.
+struct PrefilteredLevel {
+  float sharpness = 0.0f;
+  int faceResolution = 0;
+  std::vector<glm::vec3> texels;   ///< 6 faces (+X -X +Y -Y +Z -Z, GL orientation) by faceResolution^2, row-major
+};
+
+/// As two cube maps with mip chains, made for one GL cube-map array with two layers: mip m of layer 0 has sharpness
+/// finestSharpness / 4^m, layer 1 half of that; face resolution halves with each mip. (Sharpness ratio 2 between neighbours:
+/// 4 % kernel error when interpolated in log2 sharpness; resolution about 6 sqrt(sharpness).)
+struct SgPyramid {
+  float finestSharpness = 0.0f;
+  int finestResolution = 0;
+  std::vector<PrefilteredLevel> layer0;
+  std::vector<PrefilteredLevel> layer1;
+};
+
+struct SgEnvironmentSettings {
+  int lightCount = 12;               ///< at most; fewer when the environment has fewer bright spots
+  float minLightSharpness = 20.0f;   ///< broader light stays in the residual
+  float maxLightSharpness = 1e6f;
+  int finestResolution = 512;        ///< power of two
+  int threads = 0;
+};
+
+struct SgEnvironment {
+  std::vector<SgLight> lights;       ///< brightest first (by flux)
+  SgPyramid full;                    ///< of the whole environment
+  /// Of the environment minus the lights: algebraically full - sum of lights (convolved exactly, ALGORITHMS 1.4), so it may be negative.
+  SgPyramid residual;
+};
+
+/// Deterministic for any thread count. A constant environment gives that constant at every texel and no light.
+SgEnvironment prepareEnvironment(const Environment& environment, const SgEnvironmentSettings& settings = {});
+
+/// Trilinear-in-spirit lookup as the shader does it (bilinear in a face, linear in log2 sharpness): for tests and tools.
+glm::vec3 samplePyramid(const SgPyramid& pyramid, glm::vec3 direction, float sharpness);
+
+}  // namespace chiaro
