@@ -43,9 +43,9 @@ struct SgEnvironmentSettings {
 
 struct SgEnvironment {
   std::vector<SgLight> lights;       ///< brightest first (by flux)
-  SgPyramid full;                    ///< of the whole environment
-  /// Of the environment minus the lights: algebraically full - sum of lights (convolved exactly, ALGORITHMS 1.4), so it may be negative.
-  SgPyramid residual;
+  /// Of the whole environment, lights included. A shader that treats the lights apart subtracts their exact convolution
+  /// (ALGORITHMS 1.4) where it needs the rest alone.
+  SgPyramid pyramid;
 };
 
 /// Deterministic for any thread count. A constant environment gives that constant at every texel and no light.
