@@ -1,0 +1,11 @@
+// The one list of lobe files, in an order in which each needs only those above it. A new file goes here.
+#include "shaders/lobe/special.glsl"
+#include "shaders/lobe/sg.glsl"
+#include "shaders/lobe/half_space.glsl"
+#include "shaders/lobe/ssdf.glsl"
+#include "shaders/lobe/cosine.glsl"
+#include "shaders/lobe/warp.glsl"
+#include "shaders/lobe/octahedral.glsl"
+#include "shaders/lobe/equirect.glsl"
+#include "shaders/lobe/sh.glsl"
+#include "shaders/lobe/ggx.glsl"
