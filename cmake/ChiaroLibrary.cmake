@@ -12,6 +12,11 @@ function(chiaro_configure_target target)
   set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF POSITION_INDEPENDENT_CODE ON)
   # Bit-for-bit results across builds: no fused multiply-add behind our back, no fast-math.
   target_compile_options(${target} PRIVATE ${CHIARO_WARNINGS} -ffp-contract=off)
+  if(CHIARO_SANITIZE)
+    set(sanitize "-fsanitize=${CHIARO_SANITIZE}" -fno-sanitize-recover=all -fno-omit-frame-pointer)
+    target_compile_options(${target} PRIVATE ${sanitize})
+    target_link_options(${target} PUBLIC ${sanitize})
+  endif()
 endfunction()
 
 # chiaro_add_library(<room> SOURCES ... PUBLIC ... PRIVATE ...) makes chiaro_<room> and chiaro::<room>.
