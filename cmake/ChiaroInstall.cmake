@@ -81,9 +81,10 @@ if(CHIARO_BUILD_RUNTIME)
   list(APPEND rooms runtime)
 endif()
 foreach(room IN LISTS rooms)
-  # The lobe maths is GLSL text that the C++ headers include.
+  # The lobe maths is GLSL text that the C++ headers include. What only the programs use stays behind.
   install(DIRECTORY "${PROJECT_SOURCE_DIR}/${room}/" DESTINATION "${header_dir}/${room}"
-    FILES_MATCHING PATTERN "*.h" PATTERN "*.glsl" PATTERN "report" EXCLUDE PATTERN "stage" EXCLUDE)
+    FILES_MATCHING PATTERN "*.h" PATTERN "*.glsl"
+    REGEX "/(shaders/stage|precompute/report|precompute/program|runtime/viewer)$" EXCLUDE)
 endforeach()
 # The runtime carries its shaders inside; these are for reading, and for CHIARO_SHADER_PATH.
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/shaders" DESTINATION "${CMAKE_INSTALL_DATADIR}/chiaro"
