@@ -7,6 +7,7 @@ using Mat3 = glm::mat<3, 3, Real, glm::defaultp>;
 using IVec2 = glm::ivec2;
 
 using glm::abs;
+using glm::cos;
 using glm::cross;
 using glm::dot;
 using glm::exp;
@@ -16,7 +17,9 @@ using glm::max;
 using glm::min;
 using glm::mix;
 using glm::pow;
+using glm::sin;
 using glm::sqrt;
 
+inline bool isNotANumber(Real x) { return x != x; }
 inline Real notANumber() { return std::numeric_limits<Real>::quiet_NaN(); }
 inline Real positiveInfinity() { return std::numeric_limits<Real>::infinity(); }

@@ -5,13 +5,7 @@
 #include <glm/glm.hpp>
 #include <limits>
 
-#define CHIARO_CPP 1
-#define FN inline
-#define CONST inline const
-#define IN(T) const T&
-#define OUT(T) T&
-#define INOUT(T) T&
-#define OUT_ARRAY(T, name, size) T (&name)[size]
+#include "shaders/cpp/dialect_begin.h"
 
 namespace chiaro::lobe32 {
 using Real = float;
@@ -25,10 +19,4 @@ using Real = double;
 #include "shaders/cpp/lobe_files.h"
 }  // namespace chiaro::lobe64
 
-#undef CHIARO_CPP
-#undef FN
-#undef CONST
-#undef IN
-#undef OUT
-#undef INOUT
-#undef OUT_ARRAY
+#include "shaders/cpp/dialect_end.h"

@@ -9,3 +9,5 @@
 #include "shaders/lobe/equirect.glsl"
 #include "shaders/lobe/sh.glsl"
 #include "shaders/lobe/ggx.glsl"
+#include "shaders/lobe/specular.glsl"
+#include "shaders/lobe/display.glsl"

@@ -19,5 +19,7 @@
 #define INOUT(T) inout T
 #define OUT_ARRAY(T, name, size) out T name[size]
 
+// By its bits: compilers may assume that x == x, and turn comparisons into min and max, which drop NaN.
+bool isNotANumber(float x) { return (floatBitsToUint(x) & 0x7fffffffu) > 0x7f800000u; }
 float notANumber() { return uintBitsToFloat(0x7fc00000u); }
 float positiveInfinity() { return uintBitsToFloat(0x7f800000u); }

@@ -119,5 +119,5 @@ FN Vec2 ggxMixtureLobe(IN(Real) alpha, IN(int) count, IN(int) index) {
   Real a = clampReal(alpha, kMinAlpha, Real(0.99));
   int row = 5 * (count * (count - 1) + 2 * index);
   Real sharpness = Real(2.0) * ggxCurvature(a) * exp(ggxLobePolynomial(row + 5, a));
-  return Vec2(exp(ggxLobePolynomial(row, a)), sharpness > Real(1.0e6) ? Real(1.0e6) : sharpness);
+  return Vec2(exp(ggxLobePolynomial(row, a)), clampReal(sharpness, Real(0.0), Real(1.0e6)));
 }

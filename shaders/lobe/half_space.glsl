@@ -32,11 +32,23 @@ FN Real halfSpaceFractionFarSide(IN(Real) sinMagnitude, IN(Real) oneMinusSin, IN
     Real ratio = q * erfOverArgument(t2 * q * q) / erfOverArgument(t2);
     return Real(0.5) - Real(0.5) * oneMinusExp(l) / (Real(1.0) + e) * ratio;
   }
-  // erfc(t q) - erfc(t) with e^(-(t q)^2) taken out; what is left subtracts numbers of like size only when it hardly counts.
+  // erfc(t q) - erfc(t) with e^(-(t q)^2) taken out. Where the two nearly meet, the integral between them instead of their
+  // difference: two Gauss points, relative error 1e-6 at a gap of 1/4.
   Real t = sqrt(t2);
-  Real gap = t2 * oneMinusSin * (Real(1.0) - b * sinMagnitude * onePlusSin) * (Real(1.0) + q);  // t^2 (1 - q^2)
   Real scaledAtT = erfcScaled(t);
-  Real difference = exp(-t2 * q * q) * ((erfcScaled(t * q) - scaledAtT) + oneMinusExp(gap) * scaledAtT);
+  Real oneMinusQ = oneMinusSin * (Real(1.0) - b * sinMagnitude * onePlusSin);
+  Real gap = t2 * oneMinusQ * (Real(1.0) + q);  // t^2 (1 - q^2)
+  Real difference;
+  if (gap < Real(0.25)) {
+    Real from = t * q;
+    Real x1 = t * oneMinusQ * kGaussPoint;
+    Real x2 = t * oneMinusQ * (Real(1.0) - kGaussPoint);
+    difference = t * oneMinusQ * kOneOverSqrtPi
+               * (exp(-x1 * (Real(2.0) * from + x1)) + exp(-x2 * (Real(2.0) * from + x2)));
+  } else {
+    difference = (erfcScaled(t * q) - scaledAtT) + oneMinusExp(gap) * scaledAtT;
+  }
+  difference *= exp(-t2 * q * q);
   Real erfAtT = Real(1.0) - exp(-t2) * scaledAtT;
   return (e + Real(0.5) * (Real(1.0) - e) * difference / erfAtT) / (Real(1.0) + e);
 }

@@ -42,12 +42,14 @@ FN Real sgNorm(IN(SphericalGaussian) g) {
 // With l1 >= l2:  v = l1 a1 + l2 a2 = (l1 - l2) a1 + l2 (a1 + a2). The two terms never point against each other, so |v| keeps
 // its relative accuracy for opposite axes; everything is divided by l1, so nothing overflows.
 FN SphericalGaussian sgProductLog(IN(Vec3) axis1, IN(Real) sharpness1, IN(Vec3) axis2, IN(Real) sharpness2) {
+  Real total = clampSharpness(sharpness1) + clampSharpness(sharpness2);
+  if (isNotANumber(total)) return sphericalGaussian(axis1, total, total);
   bool swapped = sharpness2 > sharpness1;
   Vec3 a1 = swapped ? axis2 : axis1;
   Vec3 a2 = swapped ? axis1 : axis2;
   Real l1 = clampSharpness(swapped ? sharpness2 : sharpness1);
   Real l2 = clampSharpness(swapped ? sharpness1 : sharpness2);
-  if (l1 < kMinSharpness) return sphericalGaussian(axis1, l1 + l2, Real(0.0));  // two constants; l2 < 0 gives NaN
+  if (l1 < kMinSharpness) return sphericalGaussian(axis1, total, Real(0.0));  // two constants
   Real ratio = l2 / l1;
   Vec3 v = ((l1 - l2) / l1) * a1 + ratio * (a1 + a2);
   Vec3 difference = a1 - a2;
@@ -141,6 +143,7 @@ FN Real vmfSharpnessFromMeanCosine(IN(Real) meanCosine) {
 FN SphericalGaussian sgConvolve(IN(SphericalGaussian) g, IN(SphericalGaussian) kernel) {
   Real l1 = clampSharpness(g.sharpness);
   Real l2 = clampSharpness(kernel.sharpness);
+  if (isNotANumber(l1) || isNotANumber(l2)) return sphericalGaussian(g.axis, notANumber(), notANumber());
   Real broad = l1 < l2 ? l1 : l2;
   Real sharp = l1 < l2 ? l2 : l1;
   Real l3;
@@ -152,6 +155,5 @@ FN SphericalGaussian sgConvolve(IN(SphericalGaussian) g, IN(SphericalGaussian) k
   // E(2 l1) / E(2 l3) first: the product of two integrals of sharp lobes could underflow.
   Real gain = oneMinusExpOver(Real(2.0) * sharp) / oneMinusExpOver(Real(2.0) * l3);
   Real amplitude = g.amplitude * kernel.amplitude * kFourPi * gain * oneMinusExpOver(Real(2.0) * broad);
-  // A NaN sharpness may have fallen through the comparisons above; let it through to the amplitude as well.
-  return sphericalGaussian(g.axis, l3, amplitude + (l1 - l1) + (l2 - l2));
+  return sphericalGaussian(g.axis, l3, amplitude);
 }

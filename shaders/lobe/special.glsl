@@ -9,12 +9,15 @@ CONST Real kHalfPi = Real(1.57079632679489661923);
 CONST Real kTwoPi = Real(6.28318530717958647693);
 CONST Real kFourPi = Real(12.5663706143591729539);
 CONST Real kOneOverPi = Real(0.318309886183790671538);
+CONST Real kOneOverSqrtPi = Real(0.564189583547756286948);
+CONST Real kGaussPoint = Real(0.211324865405187117746);  // of two-point Gauss quadrature on [0, 1]; the other is 1 minus this
 CONST Real kMaxSharpness = Real(1.0e30);
 // Below this a sharpness is a constant lobe; keeps quotients of two sharpnesses clear of flushed denormals.
 CONST Real kMinSharpness = Real(1.0e-30);
 
 // Like clamp, but NaN stays NaN (GLSL's clamp may turn it into a bound).
 FN Real clampReal(IN(Real) x, IN(Real) low, IN(Real) high) {
+  if (isNotANumber(x)) return x;
   if (x < low) return low;
   if (x > high) return high;
   return x;
@@ -22,7 +25,7 @@ FN Real clampReal(IN(Real) x, IN(Real) low, IN(Real) high) {
 
 // sharpness in [0, kMaxSharpness]; NaN for negative or NaN.
 FN Real clampSharpness(IN(Real) sharpness) {
-  if (sharpness < Real(0.0)) return notANumber();
+  if (isNotANumber(sharpness) || sharpness < Real(0.0)) return notANumber();
   if (sharpness > kMaxSharpness) return kMaxSharpness;
   return sharpness;
 }
@@ -60,8 +63,7 @@ FN Real erfIntegralOverSquare(IN(Real) x2) {
 // Scaled complementary error function e^(x^2) erfc(x), x >= 0. Our minimax rational fit: relative error 1e-9; every
 // coefficient is positive, so nothing cancels. Constant above 100: there e^(-x^2) is 0 in any precision.
 FN Real erfcScaled(IN(Real) argument) {
-  Real x = argument;
-  if (x > Real(100.0)) x = Real(100.0);
+  Real x = clampReal(argument, Real(0.0), Real(100.0));
   Real numerator = Real(0.999999999) + x * (Real(1.5478925) + x * (Real(1.14959837) + x * (Real(0.494672139)
                  + x * (Real(0.123455203) + x * Real(0.0148045775)))));
   Real denominator = Real(1.0) + x * (Real(2.67627155) + x * (Real(3.16944957) + x * (Real(2.14697859)
@@ -71,8 +73,7 @@ FN Real erfcScaled(IN(Real) argument) {
 
 // e^(x^2) times the integral of erfc from x to infinity, x >= 0. Same kind of fit: relative error 1.2e-9.
 FN Real erfcIntegralScaled(IN(Real) argument) {
-  Real x = argument;
-  if (x > Real(100.0)) x = Real(100.0);
+  Real x = clampReal(argument, Real(0.0), Real(100.0));
   Real numerator = Real(0.564189584) + x * (Real(0.709868533) + x * (Real(0.446252372) + x * (Real(0.167747764)
                  + x * (Real(0.0377082102) + x * Real(0.00426442411)))));
   Real denominator = Real(1.0) + x * (Real(3.03066322) + x * (Real(4.16266923) + x * (Real(3.38661827)
@@ -105,6 +106,7 @@ FN Real cosPi(IN(Real) x) { return sinQuarter(kPi * (Real(0.5) - abs(x))); }
 
 // atan(y / x) in [0, pi/2] for y, x >= 0, not both 0 (that gives NaN). Relative error 1e-10 in exact arithmetic.
 FN Real atanQuadrant(IN(Real) y, IN(Real) x) {
+  if (isNotANumber(x) || isNotANumber(y)) return notANumber();
   Real larger = y > x ? y : x;
   Real smaller = y > x ? x : y;
   Real ratio = smaller / larger;

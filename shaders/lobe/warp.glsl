@@ -66,10 +66,11 @@ FN Real warpTable(IN(Real) c, IN(int) count, IN(int) column) {
 FN Real sgWarpEnergy(IN(Real) c, IN(int) count) { return warpTable(clampReal(c, kMinWarpCosine, Real(1.0)), count, count == 5 ? 5 : 4); }
 
 // Lobe `index` of `count` (1: isotropic; 3 or 5), index in 0..count-1, strung from the viewer's side outwards. Squared error at
-// c = .5: .114, .0036, 1.5e-4. Made for sharp lobes: below sharpness 16 offsets are capped at 1 radian from the middle.
+// c = .5: .114, .0036, 1.5e-4. Made for sharp lobes: below sharpness 16 the offsets stay those of 16, at most 1.1 radian.
 FN SphericalGaussian sgWarpLobe(IN(SphericalGaussian) halfLobe, IN(Vec3) wo, IN(int) count, IN(int) index) {
   if (count == 1) return sgWarpIsotropic(halfLobe, wo);
   Real l = clampSharpness(halfLobe.sharpness);
+  if (isNotANumber(l)) return sphericalGaussian(halfLobe.axis, l, l);
   Vec3 p = halfLobe.axis;
   Real c = warpCosine(wo, p);
   int k = index - (count - 1) / 2;
@@ -78,19 +79,18 @@ FN SphericalGaussian sgWarpLobe(IN(SphericalGaussian) halfLobe, IN(Vec3) wo, IN(
   Real amplitude = warpTable(c, count, 2 + distance);
   Real sharpness = Real(0.25) * l / (width * width);
 
-  // r and the direction u in which a tilt away from the viewer moves it, both in the plane of wo and p.
+  // r and the direction u in which a tilt away from the viewer moves it, both in the plane of wo and p. The part of wo across p
+  // comes from wo -+ p, which is exact where wo is nearly +-p.
+  Real cosine = dot(wo, p);
   Vec3 r = warpAxis(wo, p);
-  Vec3 tangent = wo - dot(wo, p) * p;
+  Vec3 e = cosine < Real(0.0) ? wo + p : wo - p;
+  Vec3 tangent = e - dot(e, p) * p;
   Real sine = sqrt(dot(tangent, tangent));
-  Vec3 m = sine > Real(0.0) ? tangent / sine : Vec3(Real(0.0), Real(0.0), Real(0.0));
-  Vec3 u = -(sine * p + dot(wo, p) * m);
+  Vec3 m = sine == Real(0.0) ? Vec3(Real(0.0), Real(0.0), Real(0.0)) : tangent / sine;
+  Vec3 u = -(sine * p + cosine * m);
 
-  Real cap = Real(1.0) / Real((count - 1) / 2);
-  Real spread = warpTable(c, count, 1) * Real(2.0);          // times 1 / sqrt(l) is the angle
-  Real root = sqrt(l);
-  Real angle = spread < cap * root ? spread / root : cap;
-  if (l != l || spread != spread) angle = notANumber();
-  angle = Real(k) * angle;
+  Real deviation = l < Real(16.0) ? Real(0.5) : Real(2.0) / sqrt(l);
+  Real angle = Real(k) * warpTable(c, count, 1) * deviation;
   Vec3 axis = sinQuarter(kHalfPi - abs(angle)) * r + sinQuarter(angle) * u;
   return sphericalGaussian(axis, sharpness, halfLobe.amplitude * amplitude);
 }

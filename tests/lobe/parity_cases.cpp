@@ -1,0 +1,332 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "tests/lobe/parity.h"
+
+namespace chiaro::parity {
+namespace {
+
+constexpr std::size_t kSamples = 65536;
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr float kDenormal = 1e-40f;
+
+/// Inputs of every kind the promise names. One generator per case, seeded by the case's name.
+class Generator {
+ public:
+  explicit Generator(const std::string& name) {
+    std::seed_seq seed(name.begin(), name.end());
+    engine_.seed(seed);
+  }
+
+  double uniform(double low, double high) { return std::uniform_real_distribution<double>(low, high)(engine_); }
+  double logUniform(double low, double high) { return std::exp(uniform(std::log(low), std::log(high))); }
+  bool chance(double p) { return uniform(0, 1) < p; }
+  template <class T>
+  T pick(std::initializer_list<T> values) {
+    return *(values.begin() + static_cast<std::ptrdiff_t>(uniform(0, static_cast<double>(values.size()) * (1 - 1e-12))));
+  }
+
+  /// Mostly log-spaced 1e-6..1e6; some of 0, denormal, tiny, huge, +-inf, NaN, negative.
+  float sharpness() {
+    if (chance(0.02)) return pick({kNan, kInfinity, -kInfinity, -1.0f});
+    if (chance(0.06)) return pick({0.0f, -0.0f, kDenormal, 1e-30f, 1e-20f, 1e6f, 1e10f, 1e25f, 3e38f});
+    if (chance(0.1)) return static_cast<float>(logUniform(1e-30, 1e30));
+    return static_cast<float>(logUniform(1e-6, 1e6));
+  }
+  float amplitude() {
+    if (chance(0.02)) return pick({kNan, kInfinity, -kInfinity});
+    if (chance(0.05)) return pick({0.0f, kDenormal, 1e-20f, 1e15f, -1e15f});
+    return static_cast<float>((chance(0.1) ? -1 : 1) * logUniform(1e-3, 1e3));
+  }
+  glm::dvec3 direction() {
+    if (chance(0.05)) {
+      const double s = chance(0.5) ? 1 : -1;
+      return pick({glm::dvec3(s, 0, 0), glm::dvec3(0, s, 0), glm::dvec3(0, 0, s)});
+    }
+    std::normal_distribution<double> gauss;
+    return glm::normalize(glm::dvec3(gauss(engine_), gauss(engine_), gauss(engine_)));
+  }
+  /// At `angle` from `axis`, any azimuth.
+  glm::dvec3 tilted(glm::dvec3 axis, double angle) {
+    const glm::dvec3 other = glm::normalize(glm::cross(axis, std::abs(axis.x) < 0.9 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0)));
+    const glm::dvec3 third = glm::cross(axis, other);
+    const double phi = uniform(0, 2 * 3.14159265358979);
+    return std::cos(angle) * axis + std::sin(angle) * (std::cos(phi) * other + std::sin(phi) * third);
+  }
+  /// Related to `axis` as lobes meet: equal, opposite, nearly so, at an angle where a lobe of this sharpness still counts, any.
+  glm::vec3 partner(glm::vec3 axis, double sharpness) {
+    const glm::dvec3 a(axis);
+    const double kind = uniform(0, 1);
+    if (kind < 0.05) return axis;
+    if (kind < 0.10) return -axis;
+    if (kind < 0.15) return glm::vec3(tilted(a, logUniform(1e-8, 1)));
+    if (kind < 0.20) return glm::vec3(tilted(-a, logUniform(1e-8, 1)));
+    if (kind < 0.70 && sharpness > 0 && std::isfinite(sharpness)) {
+      return glm::vec3(tilted(a, 2 * std::asin(std::min(1.0, std::sqrt(uniform(0, 18) / (2 * sharpness))))));
+    }
+    return glm::vec3(direction());
+  }
+  /// One component may be replaced by NaN or an infinity.
+  glm::vec3 spoil(glm::vec3 v) {
+    if (chance(0.005)) v[static_cast<int>(uniform(0, 2.999))] = pick({kNan, kInfinity, -kInfinity});
+    return v;
+  }
+  float spoil(float x) { return chance(0.01) ? pick({kNan, kInfinity, -kInfinity}) : x; }
+
+ private:
+  std::mt19937_64 engine_;
+};
+
+void push(std::vector<float>& out, glm::vec3 v) { out.insert(out.end(), {v.x, v.y, v.z}); }
+
+double unitScale(const float*) { return 1.0; }
+/// Lobes scale with their amplitudes: the floor does too, upwards.
+double amplitudeScale(double product) { return std::max(1.0, std::isfinite(product) ? std::abs(product) : 1.0); }
+
+std::vector<Group> scalars(int count) {
+  std::vector<Group> groups;
+  for (int i = 0; i < count; ++i) groups.push_back({i, 1});
+  return groups;
+}
+
+/// Axis as a vector, then sharpness and amplitude, for `count` lobes.
+std::vector<Group> lobes(int count) {
+  std::vector<Group> groups;
+  for (int i = 0; i < count; ++i) groups.insert(groups.end(), {{5 * i, 3}, {5 * i + 3, 1}, {5 * i + 4, 1}});
+  return groups;
+}
+
+using Fill = std::function<void(Generator&, std::vector<float>&)>;
+
+class Registry {
+ public:
+  void add(Case c, const Fill& fill) {
+    Generator generator(c.name);
+    for (std::size_t i = 0; i < kSamples; ++i) fill(generator, c.inputs);
+    if (!c.scale) c.scale = unitScale;
+    cases.push_back(std::move(c));
+  }
+  std::vector<Case> cases;
+};
+
+#define CHIARO_KERNEL(name) #name
+#define CHIARO_RUN(name) lobe32::kernel_##name, lobe64::kernel_##name
+
+Case makeCase(std::string name, void (*run32)(const lobe32::KernelInput&, float (&)[25]), void (*run64)(const lobe64::KernelInput&, double (&)[25]),
+              int inputs, int outputs, std::vector<Group> groups, std::string domain, Scale scale = {}) {
+  Case c;
+  c.name = std::move(name);
+  c.run32 = run32;
+  c.run64 = run64;
+  c.inputCount = inputs;
+  c.outputCount = outputs;
+  c.groups = std::move(groups);
+  c.domain = std::move(domain);
+  c.scale = std::move(scale);
+  return c;
+}
+
+#define CHIARO_CASE(name, ...) makeCase(CHIARO_KERNEL(name), CHIARO_RUN(name), __VA_ARGS__)
+
+void addSpecialFunctions(Registry& r) {
+  r.add(CHIARO_CASE(oneMinusExpOver, 1, 1, scalars(1), "x >= 0"), [](Generator& g, auto& out) {
+    const float x = g.sharpness();
+    out.push_back(x < 0 ? -x : x);
+  });
+  r.add(CHIARO_CASE(errorFunction, 1, 1, scalars(1), "all x"), [](Generator& g, auto& out) {
+    out.push_back(g.spoil(static_cast<float>((g.chance(0.5) ? -1 : 1) * g.logUniform(1e-12, 50))));
+  });
+  const Fill nonNegative = [](Generator& g, auto& out) {
+    const float x = g.chance(0.5) ? static_cast<float>(g.uniform(0, 6)) : std::abs(g.sharpness());
+    out.push_back(x);
+  };
+  r.add(CHIARO_CASE(erfcScaled, 1, 1, scalars(1), "x >= 0"), nonNegative);
+  r.add(CHIARO_CASE(erfcIntegralScaled, 1, 1, scalars(1), "x >= 0"), nonNegative);
+  r.add(CHIARO_CASE(sinPi, 1, 1, scalars(1), "|x| <= 1"), [](Generator& g, auto& out) {
+    const double sign = g.chance(0.5) ? -1 : 1;
+    const double near = g.logUniform(1e-12, 1);
+    out.push_back(static_cast<float>(sign * (g.chance(0.5) ? near : 1 - near)));
+  });
+  r.add(CHIARO_CASE(atanQuadrant, 2, 1, scalars(1), "x, y >= 0, 1e-30..1e30 or 0"), [](Generator& g, auto& out) {
+    for (int i = 0; i < 2; ++i) out.push_back(g.chance(0.02) ? g.pick({0.0f, kNan}) : static_cast<float>(g.chance(0.8) ? g.logUniform(1e-3, 1e3) : g.logUniform(1e-15, 1e15)));
+  });
+}
+
+void addSphericalGaussians(Registry& r) {
+  const Scale oneAmplitude = [](const float* in) { return amplitudeScale(in[4]); };
+  const Scale twoAmplitudes = [](const float* in) { return amplitudeScale(static_cast<double>(in[4]) * in[9]); };
+  const Fill pair = [](Generator& g, auto& out) {
+    const glm::vec3 axis(g.direction());
+    const float l1 = g.sharpness();
+    const float l2 = g.chance(0.1) ? l1 : g.chance(0.5) ? g.sharpness() : static_cast<float>(l1 * g.logUniform(0.1, 10));
+    push(out, g.spoil(axis));
+    out.push_back(l1);
+    out.push_back(g.amplitude());
+    push(out, g.spoil(g.partner(axis, static_cast<double>(l1) * l2 / (static_cast<double>(l1) + l2))));
+    out.push_back(l2);
+    out.push_back(g.amplitude());
+  };
+  r.add(CHIARO_CASE(sgEvaluate, 8, 1, scalars(1), "unit axes, sharpness >= 0", oneAmplitude), [](Generator& g, auto& out) {
+    const glm::vec3 axis(g.direction());
+    const float l = g.sharpness();
+    push(out, g.spoil(axis));
+    out.push_back(l);
+    out.push_back(g.amplitude());
+    push(out, g.spoil(g.partner(axis, l)));
+  });
+  const Fill lobe = [](Generator& g, auto& out) {
+    out.push_back(g.sharpness());
+    out.push_back(g.amplitude());
+  };
+  r.add(CHIARO_CASE(sgIntegral, 2, 1, scalars(1), "sharpness >= 0"), lobe);
+  r.add(CHIARO_CASE(sgNorm, 2, 1, scalars(1), "sharpness >= 0"), lobe);
+  r.add(CHIARO_CASE(sgProduct, 10, 5, lobes(1), "unit axes, sharpness >= 0", twoAmplitudes), pair);
+  r.add(CHIARO_CASE(sgInnerProduct, 10, 1, scalars(1), "unit axes, sharpness >= 0", twoAmplitudes), pair);
+  r.add(CHIARO_CASE(sgNormalizedInnerProduct, 10, 1, scalars(1), "unit axes, sharpness >= 0"), pair);
+  const Fill sharpnessOnly = [](Generator& g, auto& out) { out.push_back(g.sharpness()); };
+  r.add(CHIARO_CASE(vmfAmplitude, 1, 1, scalars(1), "sharpness >= 0"), sharpnessOnly);
+  r.add(CHIARO_CASE(vmfMeanCosine, 1, 1, scalars(1), "sharpness >= 0"), sharpnessOnly);
+  r.add(CHIARO_CASE(oneMinusMeanCosine, 1, 1, scalars(1), "sharpness >= 0"), sharpnessOnly);
+  r.add(CHIARO_CASE(vmfSharpnessFromMeanCosine, 1, 1, scalars(1), "mean cosine in [0, 1]"), [](Generator& g, auto& out) {
+    if (g.chance(0.03)) return out.push_back(g.pick({0.0f, 1.0f, kDenormal, kNan, kInfinity, -kInfinity, 1.5f, -0.5f}));
+    const double near = g.logUniform(1e-7, 1);
+    out.push_back(static_cast<float>(g.chance(0.5) ? near : 1 - near));
+  });
+  r.add(CHIARO_CASE(sgConvolve, 4, 2, scalars(2), "sharpness >= 0", [](const float* in) { return amplitudeScale(static_cast<double>(in[1]) * in[3]); }),
+        [](Generator& g, auto& out) {
+          for (int i = 0; i < 2; ++i) {
+            out.push_back(g.sharpness());
+            out.push_back(g.amplitude());
+          }
+        });
+}
+
+void addHalfSpaceAndCosine(Registry& r) {
+  // Distances where the fraction is neither 0 nor 1, and all others.
+  const auto distance = [](Generator& g, float l) {
+    if (g.chance(0.03)) return g.pick({0.0f, 1.0f, -1.0f, kDenormal, 2.0f, -2.0f, kNan, kInfinity, -kInfinity});
+    const double width = std::isfinite(l) && l > 0 ? std::min(1.0, 1 / std::sqrt(static_cast<double>(l))) : 1.0;
+    if (g.chance(0.1)) return static_cast<float>((g.chance(0.5) ? -1 : 1) * (1 - g.logUniform(1e-7, 1)));
+    return static_cast<float>(g.chance(0.6) ? std::clamp(g.uniform(-6, 6) * width, -1.0, 1.0) : g.uniform(-1, 1));
+  };
+  const Fill sineAndSharpness = [distance](Generator& g, auto& out) {
+    const float l = g.chance(0.4) ? static_cast<float>(g.logUniform(0.1, 100)) : g.sharpness();
+    out.push_back(distance(g, l));
+    out.push_back(l);
+  };
+  r.add(CHIARO_CASE(sgHalfSpaceFraction, 2, 1, scalars(1), "sine in [-1, 1], sharpness >= 0"), sineAndSharpness);
+  r.add(CHIARO_CASE(sgHalfSpaceIntegral, 2, 1, scalars(1), "sine in [-1, 1], sharpness >= 0"), sineAndSharpness);
+  r.add(CHIARO_CASE(ssdfVisibleFraction, 2, 1, scalars(1), "distance in [-pi, pi], sharpness >= 0"), [distance](Generator& g, auto& out) {
+    const float l = g.chance(0.4) ? static_cast<float>(g.logUniform(0.1, 100)) : g.sharpness();
+    const float s = distance(g, l);
+    out.push_back(g.chance(0.1) ? static_cast<float>(g.uniform(-3.1416, 3.1416)) : std::abs(s) <= 1 ? std::asin(s) : s);
+    out.push_back(l);
+  });
+  r.add(CHIARO_CASE(clampedCosineMean, 2, 1, scalars(1), "cosine in [-1, 1], sharpness >= 0"), sineAndSharpness);
+  r.add(CHIARO_CASE(clampedCosineIntegral, 2, 1, scalars(1), "cosine in [-1, 1], sharpness >= 0"), sineAndSharpness);
+}
+
+void addWarp(Registry& r) {
+  const Scale oneAmplitude = [](const float* in) { return amplitudeScale(in[4]); };
+  const Fill lobeAndViewer = [](Generator& g, auto& out) {
+    const glm::vec3 axis(g.direction());
+    const float l = g.sharpness();
+    push(out, g.spoil(axis));
+    out.push_back(l);
+    out.push_back(g.amplitude());
+    const glm::vec3 wo = g.partner(axis, 3.0);
+    push(out, g.spoil(wo));
+  };
+  r.add(CHIARO_CASE(sgWarpIsotropic, 8, 5, lobes(1), "unit axes, sharpness >= 0", oneAmplitude), lobeAndViewer);
+  r.add(CHIARO_CASE(sgWarpLobe3, 8, 15, lobes(3), "unit axes, sharpness >= 0", oneAmplitude), lobeAndViewer);
+  r.add(CHIARO_CASE(sgWarpLobe5, 8, 25, lobes(5), "unit axes, sharpness >= 0", oneAmplitude), lobeAndViewer);
+  r.add(CHIARO_CASE(sgWarpEnergy, 1, 2, scalars(2), "cosine in [-1, 1]"), [](Generator& g, auto& out) { out.push_back(g.spoil(static_cast<float>(g.uniform(-0.1, 1)))); });
+}
+
+void addMaps(Registry& r) {
+  const Fill anyDirection = [](Generator& g, auto& out) {
+    glm::vec3 d(g.direction());
+    // Close to the axes and planes, where maps have their poles, seams and folds.
+    if (g.chance(0.3)) d[static_cast<int>(g.uniform(0, 2.999))] *= static_cast<float>(g.logUniform(1e-12, 1));
+    if (g.chance(0.3)) d = glm::vec3(g.tilted(glm::round(g.direction()), g.logUniform(1e-9, 0.1)));
+    if (glm::dot(d, d) == 0.0f) d = glm::vec3(0, 0, 1);
+    if (g.chance(0.01)) d = glm::vec3(0);
+    push(out, g.spoil(d));
+  };
+  const Fill unitSquare = [](Generator& g, auto& out) {
+    for (int i = 0; i < 2; ++i) {
+      const double near = g.logUniform(1e-9, 1);
+      out.push_back(g.chance(0.01) ? g.pick({kNan, 0.0f, 1.0f, 0.5f}) : static_cast<float>(g.chance(0.7) ? g.uniform(0, 1) : g.chance(0.5) ? near : 1 - near));
+    }
+  };
+  r.add(CHIARO_CASE(octahedralEncode, 3, 2, scalars(2), "any direction"), anyDirection);
+  r.add(CHIARO_CASE(octahedralDecode, 2, 3, {{0, 3}}, "[0, 1]^2"), unitSquare);
+  r.add(CHIARO_CASE(octahedralTexel, 3, 6, {{0, 1}, {1, 1}, {2, 3}, {5, 1}}, "resolution 2..4096, one texel beyond the border"),
+        [](Generator& g, auto& out) {
+          const double level = std::floor(g.uniform(1, 12.999));
+          const double n = std::exp2(level);
+          for (int i = 0; i < 2; ++i) {
+            out.push_back(static_cast<float>(g.chance(0.1) ? g.pick({-1.0, 0.0, n - 1, n}) : std::floor(g.uniform(0, n))));
+          }
+          out.push_back(static_cast<float>(level));
+        });
+  r.add(CHIARO_CASE(equirectFromDirection, 3, 2, scalars(2), "any direction"), anyDirection);
+  r.add(CHIARO_CASE(directionFromEquirect, 2, 3, {{0, 3}}, "[0, 1]^2"), unitSquare);
+  r.add(CHIARO_CASE(shEvaluate, 3, 25, scalars(25), "unit directions; values cross zero: error over max(|Y|, .02): 2e-7 absolute", [](const float*) { return 0.02 / kFloor; }), [](Generator& g, auto& out) { push(out, g.spoil(glm::vec3(g.direction()))); });
+  r.add(CHIARO_CASE(shConstants, 1, 3, scalars(3), "l = 0..4"), [](Generator& g, auto& out) { out.push_back(static_cast<float>(std::floor(g.uniform(0, 4.999)))); });
+}
+
+void addGgx(Registry& r) {
+  const auto alpha = [](Generator& g) {
+    return g.chance(0.03) ? g.pick({0.0f, 1.0f, kDenormal, 2.0f, kNan, kInfinity, -kInfinity}) : static_cast<float>(g.logUniform(1e-4, 1));
+  };
+  const auto cosine = [](Generator& g) {
+    if (g.chance(0.03)) return g.pick({0.0f, 1.0f, -1.0f, 1.5f, kDenormal, kNan, kInfinity, -kInfinity});
+    const double near = g.logUniform(1e-7, 1);
+    return static_cast<float>(g.chance(0.5) ? g.uniform(0, 1) : g.chance(0.5) ? near : 1 - near);
+  };
+  r.add(CHIARO_CASE(ggxDistribution, 2, 1, scalars(1), "cosine in [0, 1], alpha in [1e-4, 1]"), [=](Generator& g, auto& out) { out.insert(out.end(), {cosine(g), alpha(g)}); });
+  const auto localDirection = [](Generator& g) {
+    glm::dvec3 d = g.chance(0.5) ? g.direction() : g.tilted(glm::dvec3(0, 0, 1), g.logUniform(1e-6, 1));
+    d.z = std::abs(d.z);
+    return g.spoil(glm::vec3(d));
+  };
+  r.add(CHIARO_CASE(ggxDistributionAnisotropic, 5, 1, scalars(1), "wh unit, z >= 0"), [=](Generator& g, auto& out) {
+    push(out, localDirection(g));
+    out.insert(out.end(), {alpha(g), alpha(g)});
+  });
+  r.add(CHIARO_CASE(ggxVisibility, 3, 1, scalars(1), "cosines in [0, 1], alpha in [1e-4, 1]"), [=](Generator& g, auto& out) { out.insert(out.end(), {cosine(g), cosine(g), alpha(g)}); });
+  r.add(CHIARO_CASE(ggxVisibilityAnisotropic, 8, 1, scalars(1), "wo, wi unit"), [=](Generator& g, auto& out) {
+    push(out, localDirection(g));
+    push(out, localDirection(g));
+    out.insert(out.end(), {alpha(g), alpha(g)});
+  });
+  r.add(CHIARO_CASE(fresnelSchlick, 4, 3, scalars(3), "F0 and cosine in [0, 1]"), [=](Generator& g, auto& out) {
+    for (int i = 0; i < 3; ++i) out.push_back(g.spoil(static_cast<float>(g.uniform(0, 1))));
+    out.push_back(cosine(g));
+  });
+  r.add(CHIARO_CASE(ggxMixtureLobes, 1, 20, scalars(20), "alpha in [1e-4, 1]"), [=](Generator& g, auto& out) { out.push_back(alpha(g)); });
+  r.add(CHIARO_CASE(ggxMixtureTerms, 1, 20, scalars(20), "constants"), [](Generator& g, auto& out) { out.push_back(static_cast<float>(g.uniform(0.5, 1))); });
+  r.add(CHIARO_CASE(cosineLobes, 3, 20, scalars(20), "constants"), [](Generator& g, auto& out) { push(out, glm::vec3(0, 0, g.uniform(0.5, 1))); });
+}
+
+}  // namespace
+
+const std::vector<Case>& allCases() {
+  static const std::vector<Case> cases = [] {
+    Registry r;
+    addSpecialFunctions(r);
+    addSphericalGaussians(r);
+    addHalfSpaceAndCosine(r);
+    addWarp(r);
+    addMaps(r);
+    addGgx(r);
+    return std::move(r.cases);
+  }();
+  return cases;
+}
+
+}  // namespace chiaro::parity
