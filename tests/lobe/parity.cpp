@@ -80,8 +80,12 @@ Comparison compare(const Case& c, const std::vector<double>& expected, const std
   errors.reserve(result.samples * c.groups.size());
   for (std::size_t s = 0; s < result.samples; ++s) {
     const double floor = kFloor * c.scale(&c.inputs[s * static_cast<std::size_t>(c.inputCount)]);
-    bool nanInput = false;
-    for (int i = 0; i < c.inputCount; ++i) nanInput = nanInput || std::isnan(c.inputs[s * static_cast<std::size_t>(c.inputCount) + static_cast<std::size_t>(i)]);
+    bool nanInput = false, infiniteInput = false;
+    for (int i = 0; i < c.inputCount; ++i) {
+      const float in = c.inputs[s * static_cast<std::size_t>(c.inputCount) + static_cast<std::size_t>(i)];
+      nanInput = nanInput || std::isnan(in);
+      infiniteInput = infiniteInput || std::isinf(in);
+    }
     for (const Group& group : c.groups) {
       double error2 = 0.0, size2 = 0.0;
       bool finite = true, sameClass = true;
@@ -91,7 +95,7 @@ Comparison compare(const Case& c, const std::vector<double>& expected, const std
         const Class found = classify(got[at]);
         // NaN in, NaN out. From an infinite input or an overflow any non-finite answer will do: never a plausible number.
         const bool same = wanted == Class::finite ? found == Class::finite
-                          : wanted == Class::nan && nanInput ? found == Class::nan
+                          : wanted == Class::nan && nanInput && !infiniteInput ? found == Class::nan
                                                              : found != Class::finite;
         sameClass = sameClass && same;
         finite = finite && wanted == Class::finite;
