@@ -1,0 +1,305 @@
+#include <Imath/half.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <new>
+#include <stdexcept>
+
+#include "assets/error.h"
+#include "assets/file.h"
+#include "assets/scene/glb.h"
+#include "assets/scene/gltf_scene.h"
+#include "assets/transfer/transfer.h"
+#include "assets/transfer/transfer_format.h"
+
+namespace chiaro {
+namespace {
+
+using nlohmann::json;
+
+const std::string kBakeAgain = "the file is damaged, bake it again";
+constexpr std::int64_t kShort = 5122, kUnsignedByte = 5121;
+
+class BakedReader {
+ public:
+  BakedReader(std::span<const std::uint8_t> bytes, const std::filesystem::path& path) : bytes_(bytes), path_(path), where_(path.string()) {}
+
+  BakedScene read() {
+    openContainer();
+    findExtension();
+    checkJson();
+    checkBufferViews();
+    readShared();
+    baked_.scene = readGltfScene(bytes_, path_, {});
+    readVertices();
+    return std::move(baked_);
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& what) const { throw inputError(where_, what, kBakeAgain); }
+
+  [[noreturn]] void failUnbaked() const {
+    throw inputError(where_, "has no radiance transfer in it", "run chiaro-precompute on it first and open what that writes");
+  }
+
+  // The container and its JSON --------------------------------------------------------------------------------------
+
+  void openContainer() {
+    const auto* text = reinterpret_cast<const char*>(bytes_.data());
+    const std::string_view head(text, std::min<std::size_t>(bytes_.size(), 64));
+    const std::size_t first = head.find_first_not_of(" \t\r\n");
+    // A text glTF is a likely mistake, and it has no transfer in it.
+    if (first != std::string_view::npos && head[first] == '{') failUnbaked();
+    chunks_ = parseGlb(bytes_, where_);
+    requireShallowJson(chunks_.json, where_);
+    root_ = json::parse(chunks_.json.begin(), chunks_.json.end(), nullptr, false);
+    if (root_.is_discarded() || !root_.is_object()) fail("its JSON chunk is malformed");
+  }
+
+  const json& member(const json& object, const char* name, const std::string& owner) const {
+    if (!object.is_object() || !object.contains(name)) fail(owner + " has no \"" + name + "\"");
+    return object[name];
+  }
+
+  std::int64_t integer(const json& object, const char* name, std::int64_t lower, std::int64_t upper, const std::string& owner) const {
+    const json& value = member(object, name, owner);
+    const bool fits = value.is_number_unsigned() ? value.get<std::uint64_t>() <= static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max()) : value.is_number_integer();
+    if (!fits || value.get<std::int64_t>() < lower || value.get<std::int64_t>() > upper)
+      fail("\"" + std::string(name) + "\" of " + owner + " is not an integer from " + std::to_string(lower) + " to " + std::to_string(upper));
+    return value.get<std::int64_t>();
+  }
+
+  std::string text(const json& object, const char* name, const std::string& owner) const {
+    const json& value = member(object, name, owner);
+    if (!value.is_string()) fail("\"" + std::string(name) + "\" of " + owner + " is not text");
+    return value.get<std::string>();
+  }
+
+  const json& listOf(const json& object, const char* name, const std::string& owner) const {
+    const json& value = member(object, name, owner);
+    if (!value.is_array()) fail("\"" + std::string(name) + "\" of " + owner + " is not a list");
+    return value;
+  }
+
+  void findExtension() {
+    if (!root_.contains("extensions") || !root_["extensions"].is_object() || !root_["extensions"].contains(kTransferExtension)) failUnbaked();
+    extension_ = &root_["extensions"][kTransferExtension];
+    if (!extension_->is_object()) fail(std::string(kTransferExtension) + " is not an object");
+    const std::int64_t version = integer(*extension_, "version", 0, std::numeric_limits<std::int32_t>::max(), kTransferExtension);
+    if (version != kTransferVersion)
+      throw inputError(where_, "has transfer version " + std::to_string(version) + ", this program reads version " + std::to_string(kTransferVersion),
+                       version > kTransferVersion ? "update Chiaro" : "bake it again");
+    const std::string parameterization = text(*extension_, "parameterization", kTransferExtension);
+    if (parameterization != kTransferParameterization) fail("has the unknown parameterization \"" + parameterization + "\"");
+  }
+
+  void checkJson() const {
+    const std::string sum = text(*extension_, "jsonChecksum", kTransferExtension);
+    std::string copy(chunks_.json);
+    const std::string signedMember = jsonChecksumMember(sum);
+    const std::size_t place = copy.find(signedMember);
+    if (sum.size() != kNoChecksum.size() || place == std::string::npos) fail("its \"jsonChecksum\" is malformed");
+    copy.replace(place, signedMember.size(), jsonChecksumMember(kNoChecksum));
+    if (checksumOf(std::string_view(copy)) != sum) fail("the checksum of its JSON chunk does not match");
+  }
+
+  // Buffer views ----------------------------------------------------------------------------------------------------
+
+  std::string viewLabel(std::size_t index) const {
+    const json& view = root_["bufferViews"][index];
+    const bool named = view.is_object() && view.contains("name") && view["name"].is_string();
+    return "bufferView " + std::to_string(index) + (named ? " (" + view["name"].get<std::string>() + ")" : "");
+  }
+
+  /// They tile the binary chunk: each starts where the one before ends, rounded up to 4, and what lies between is 0.
+  void checkBufferViews() {
+    const json& buffers = listOf(root_, "buffers", "the file");
+    const auto size = static_cast<std::int64_t>(chunks_.binary.size());
+    if (buffers.size() != 1 || (buffers[0].is_object() && buffers[0].contains("uri"))) fail("has not exactly one buffer inside");
+    if (integer(buffers[0], "byteLength", 0, std::numeric_limits<std::int64_t>::max(), "the buffer") != size)
+      fail("its buffer and its BIN chunk have different lengths");
+    const json& views = listOf(root_, "bufferViews", "the file");
+    const json& sums = listOf(*extension_, "checksums", kTransferExtension);
+    if (sums.size() != views.size()) fail("has " + std::to_string(sums.size()) + " checksums for " + std::to_string(views.size()) + " buffer views");
+    std::int64_t end = 0;
+    for (std::size_t i = 0; i < views.size(); ++i) {
+      const std::string label = viewLabel(i);
+      const std::int64_t offset = integer(views[i], "byteOffset", 0, size, label);
+      const std::int64_t length = integer(views[i], "byteLength", 1, size, label);
+      integer(views[i], "buffer", 0, 0, label);
+      if (offset != static_cast<std::int64_t>(aligned4(static_cast<std::size_t>(end))) || length > size - offset) fail(label + " does not lie where it should");
+      if (views[i].contains("byteStride")) fail(label + " has a byte stride");
+      requireZeros(end, offset);
+      views_.push_back(chunks_.binary.subspan(static_cast<std::size_t>(offset), static_cast<std::size_t>(length)));
+      if (!sums[i].is_string() || sums[i].get<std::string>() != checksumOf(views_.back())) fail("checksum of " + label + " does not match");
+      end = offset + length;
+    }
+    if (size - end >= 4) fail("its BIN chunk holds bytes that no buffer view names");
+    requireZeros(end, size);
+  }
+
+  void requireZeros(std::int64_t first, std::int64_t last) const {
+    for (std::int64_t i = first; i < last; ++i)
+      if (chunks_.binary[static_cast<std::size_t>(i)] != 0) fail("its padding at byte " + std::to_string(i) + " of the BIN chunk is not 0");
+  }
+
+  /// The elements of a whole buffer view that must hold exactly `count` of them.
+  template <class T>
+  std::vector<T> elements(std::int64_t view, std::size_t count, const std::string& what) const {
+    const auto bytes = views_[static_cast<std::size_t>(view)];
+    if (bytes.size() != count * sizeof(T))
+      fail(what + " takes " + std::to_string(bytes.size()) + " bytes instead of " + std::to_string(count * sizeof(T)));
+    std::vector<T> values(count);
+    std::memcpy(values.data(), bytes.data(), bytes.size());
+    return values;
+  }
+
+  std::int64_t viewIndex(const json& object, const char* name, const std::string& owner) const {
+    return integer(object, name, 0, static_cast<std::int64_t>(views_.size()) - 1, owner);
+  }
+
+  // What all vertices share -----------------------------------------------------------------------------------------
+
+  void requireFinite(const std::vector<float>& values, const std::string& what) const {
+    for (std::size_t i = 0; i < values.size(); ++i)
+      if (!std::isfinite(values[i])) fail(what + " is not finite at element " + std::to_string(i));
+  }
+
+  void readShared() {
+    Transfer& t = baked_.transfer;
+    const json& e = *extension_;
+    t.terms = static_cast<int>(integer(e, "terms", 0, kMostTransferTerms, kTransferExtension));
+    t.resolution = static_cast<int>(integer(e, "resolution", t.terms > 0 ? 1 : 0, kMostTransferResolution, kTransferExtension));
+    t.directionCount = static_cast<int>(integer(e, "directionCount", 0, kMostTransferDirections, kTransferExtension));
+    if (t.directionCount % 4 != 0) fail("\"directionCount\" is not a multiple of 4");
+    const json& sharpness = member(e, "directionSharpness", kTransferExtension);
+    t.directionSharpness = sharpness.is_number() ? sharpness.get<float>() : -1.0f;
+    if (!(t.directionSharpness >= 0.0f) || !std::isfinite(t.directionSharpness)) fail("\"directionSharpness\" is not a number from 0");
+    readDirections();
+    const auto texels = static_cast<std::size_t>(t.resolution) * static_cast<std::size_t>(t.resolution);
+    if (t.terms > 0 || e.contains("mean")) t.mean = elements<float>(viewIndex(e, "mean", kTransferExtension), texels, "the mean");
+    requireFinite(t.mean, "the mean");
+    if (t.terms > 0) readEigenfunctions(texels);
+    readFacts();
+  }
+
+  void readDirections() {
+    Transfer& t = baked_.transfer;
+    if (t.directionCount == 0) return;
+    t.directions = elements<glm::vec3>(viewIndex(*extension_, "directions", kTransferExtension), static_cast<std::size_t>(t.directionCount), "the list of directions");
+    for (const auto& d : t.directions) {
+      const float error = std::abs(glm::length(d) - 1.0f);
+      if (!(error <= 1e-3f)) fail("one of its directions is not a unit vector");
+    }
+  }
+
+  void readEigenfunctions(std::size_t texels) {
+    Transfer& t = baked_.transfer;
+    const auto terms = static_cast<std::size_t>(t.terms);
+    const auto halves = elements<std::uint16_t>(viewIndex(*extension_, "eigenfunctions", kTransferExtension), terms * texels, "the eigenfunctions' list");
+    t.eigenfunctions.reserve(halves.size());
+    for (const auto bits : halves) {
+      Imath::half value;
+      value.setBits(bits);
+      t.eigenfunctions.push_back(value);
+    }
+    requireFinite(t.eigenfunctions, "the list of eigenfunctions");
+    t.weightScale = elements<float>(viewIndex(*extension_, "weightScales", kTransferExtension), terms, "the list of weight scales");
+    requireFinite(t.weightScale, "the list of weight scales");
+    for (const float scale : t.weightScale)
+      if (!(scale > 0.0f)) fail("a weight scale is not positive");
+  }
+
+  void readFacts() {
+    const json& facts = member(*extension_, "facts", kTransferExtension);
+    if (!facts.is_object()) fail("\"facts\" is not an object");
+    for (const auto& [name, value] : facts.items()) {
+      if (!value.is_number() && !value.is_null()) fail("the fact \"" + name + "\" is not a number");
+      baked_.facts[name] = value.is_null() ? std::numeric_limits<double>::quiet_NaN() : value.get<double>();
+    }
+  }
+
+  // What each vertex has --------------------------------------------------------------------------------------------
+
+  /// The scene reader walks nodes; the file's meshes must come out of it one to one, in order.
+  void readVertices() {
+    std::size_t index = 0;
+    const json& meshes = listOf(root_, "meshes", "the file");
+    for (std::size_t m = 0; m < meshes.size(); ++m) {
+      const std::string meshLabel = "mesh " + std::to_string(m);
+      for (const json& primitive : listOf(meshes[m], "primitives", meshLabel)) {
+        const std::string label = "primitive " + std::to_string(index) + " (of " + meshLabel + ")";
+        if (index >= baked_.scene.primitives.size() || baked_.scene.primitives[index].mesh != static_cast<int>(m))
+          fail("its nodes do not show its meshes in order");
+        const std::size_t count = baked_.scene.primitives[index].positions.size();
+        const json& attributes = member(primitive, "attributes", label);
+        if (!attributes.is_object() || !attributes.contains("NORMAL")) fail(label + " has no normals");
+        baked_.transfer.primitives.push_back(readPrimitive(attributes, count, label));
+        ++index;
+      }
+    }
+    if (index != baked_.scene.primitives.size()) fail("its nodes do not show its meshes in order");
+  }
+
+  PrimitiveTransfer readPrimitive(const json& attributes, std::size_t count, const std::string& label) const {
+    const Transfer& t = baked_.transfer;
+    PrimitiveTransfer out;
+    readColumns(attributes, "_SSDF_", kShort, static_cast<std::size_t>(t.paddedTerms()), count, label, out.weights);
+    readColumns(attributes, "_VISIBILITY_", kUnsignedByte, static_cast<std::size_t>(t.directionCount), count, label, out.visibility);
+    const auto padded = static_cast<std::size_t>(t.paddedTerms());
+    for (std::size_t v = 0; v < count; ++v)
+      for (std::size_t k = static_cast<std::size_t>(t.terms); k < padded; ++k)
+        if (out.weights[v * padded + k] != 0) fail(label + " has weights that are not 0 behind the last term");
+    return out;
+  }
+
+  template <class T>
+  void readColumns(const json& attributes, const std::string& prefix, std::int64_t componentType, std::size_t width, std::size_t count,
+                   const std::string& owner, std::vector<T>& out) const {
+    const json& accessors = listOf(root_, "accessors", "the file");
+    out.resize(count * width);
+    for (std::size_t g = 0; 4 * g < width; ++g) {
+      const std::string name = prefix + std::to_string(g);
+      const std::string label = name + " of " + owner;
+      const auto& accessor = accessors[static_cast<std::size_t>(integer(attributes, name.c_str(), 0, static_cast<std::int64_t>(accessors.size()) - 1, owner))];
+      integer(accessor, "componentType", componentType, componentType, label);
+      const std::string type = text(accessor, "type", label);
+      if (type != "VEC4" || accessor.contains("sparse") || !accessor.contains("normalized") || accessor["normalized"] != true ||
+          (accessor.contains("byteOffset") && accessor["byteOffset"] != 0))
+        fail(label + " is not a plain list of four normalized values a vertex");
+      integer(accessor, "count", static_cast<std::int64_t>(count), static_cast<std::int64_t>(count), label);
+      const auto column = elements<T>(viewIndex(accessor, "bufferView", label), 4 * count, label);
+      for (std::size_t v = 0; v < count; ++v)
+        for (std::size_t c = 0; c < 4; ++c) out[v * width + 4 * g + c] = column[4 * v + c];
+    }
+  }
+
+  std::span<const std::uint8_t> bytes_;
+  const std::filesystem::path& path_;
+  std::string where_;
+  GlbChunks chunks_;
+  json root_;
+  const json* extension_ = nullptr;
+  std::vector<std::span<const std::uint8_t>> views_;
+  BakedScene baked_;
+};
+
+}  // namespace
+
+BakedScene readBakedScene(const std::filesystem::path& path) {
+  const auto bytes = readFile(path);
+  if (bytes.empty()) throw inputError(path.string(), "is empty", "bake it again");
+  try {
+    return BakedReader(bytes, path).read();
+  } catch (const nlohmann::json::exception& exception) {
+    throw inputError(path.string(), std::string("its JSON has an unexpected value (") + exception.what() + ")", kBakeAgain);
+  } catch (const std::bad_alloc&) {
+    throw inputError(path.string(), "does not fit into memory", "use a larger machine");
+  } catch (const std::length_error&) {
+    throw inputError(path.string(), "does not fit into memory", "use a larger machine");
+  }
+}
+
+}  // namespace chiaro

@@ -1,0 +1,28 @@
+#pragma once
+/// Names and numbers of the baked file (docs/format.md) that its writer and its reader share.
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace chiaro {
+
+inline constexpr const char* kTransferExtension = "CHIARO_radiance_transfer";
+inline constexpr const char* kTransferParameterization = "octahedral";
+inline constexpr int kMostTransferResolution = 4096;
+inline constexpr int kMostTransferTerms = 4096;
+inline constexpr int kMostTransferDirections = 4096;
+
+/// XXH64 with seed 0, as 16 lower-case hexadecimal digits.
+std::string checksumOf(std::span<const std::uint8_t> bytes);
+std::string checksumOf(std::string_view text);
+
+/// The member that holds the JSON chunk's own checksum, as it stands in the text. The sum is taken with 16 zeros in place of its digits.
+std::string jsonChecksumMember(std::string_view digits);
+inline constexpr std::string_view kNoChecksum = "0000000000000000";
+
+inline constexpr std::size_t aligned4(std::size_t size) { return (size + 3) / 4 * 4; }
+
+}  // namespace chiaro

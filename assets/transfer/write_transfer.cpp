@@ -1,0 +1,179 @@
+#include <Imath/half.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "assets/error.h"
+#include "assets/file.h"
+#include "assets/transfer/gltf_writer.h"
+#include "assets/transfer/transfer.h"
+#include "assets/transfer/transfer_format.h"
+
+namespace chiaro {
+namespace {
+
+constexpr int kShort = 5122, kUnsignedByte = 5121;
+constexpr std::uint64_t kLargestGlb = 0xFFFFFFFFu;
+
+/// Everything a reader will check, so that a bug shows before the file exists.
+class FitCheck {
+ public:
+  FitCheck(const BakedScene& baked, std::string where) : scene_(baked.scene), transfer_(baked.transfer), where_(std::move(where)) {}
+
+  void run() const {
+    require(scene_.primitives.size() == transfer_.primitives.size(), "the transfer has other primitives than the scene");
+    require(!scene_.primitives.empty(), "the scene is empty");
+    checkShared();
+    for (std::size_t i = 0; i < scene_.primitives.size(); ++i) checkPrimitive(i);
+    const auto inRange = [](int index, std::size_t count) { return index == kNone || (index >= 0 && static_cast<std::size_t>(index) < count); };
+    for (const auto& texture : scene_.textures) require(inRange(texture.image, scene_.images.size()), "a texture names an image that does not exist");
+    for (const auto& m : scene_.materials)
+      for (const int texture : {m.baseColorTexture, m.metallicRoughnessTexture, m.normalTexture, m.occlusionTexture, m.emissiveTexture, m.anisotropyTexture})
+        require(inRange(texture, scene_.textures.size()), "material " + m.name + " names a texture that does not exist");
+    for (const auto& image : scene_.images) require(!image.bytes.empty(), "image " + image.name + " is empty");
+  }
+
+ private:
+  void require(bool ok, const std::string& problem) const {
+    if (!ok) throw Error(ExitCode::failed, where_, "cannot be written: " + problem, "this is a bug, please report it");
+  }
+
+  void checkShared() const {
+    const auto& t = transfer_;
+    const auto texels = static_cast<std::size_t>(std::max(t.resolution, 0)) * static_cast<std::size_t>(std::max(t.resolution, 0));
+    require(t.resolution >= 0 && t.resolution <= kMostTransferResolution, "the resolution is out of range");
+    require(t.terms >= 0 && t.terms <= kMostTransferTerms, "the number of terms is out of range");
+    require(t.directionCount >= 0 && t.directionCount <= kMostTransferDirections && t.directionCount % 4 == 0, "the number of directions is out of range or not a multiple of 4");
+    require(t.directions.size() == static_cast<std::size_t>(t.directionCount), "the directions are not as many as they say");
+    require(t.mean.size() == texels || (t.mean.empty() && t.terms == 0), "the mean has the wrong size");
+    require(t.eigenfunctions.size() == texels * static_cast<std::size_t>(t.terms), "the eigenfunctions have the wrong size");
+    require(t.weightScale.size() == static_cast<std::size_t>(t.terms), "the weight scales have the wrong size");
+    require(t.terms == 0 || t.resolution > 0, "there are terms without a resolution");
+    require(std::isfinite(t.directionSharpness) && t.directionSharpness >= 0.0f, "the direction sharpness is out of range");
+    for (const auto& d : t.directions) require(std::abs(glm::length(d) - 1.0f) <= 1e-3f, "a direction is not unit");
+    for (const float v : t.mean) require(std::isfinite(v), "the mean is not finite");
+    for (const float v : t.eigenfunctions) require(std::abs(v) <= 65504.0f, "an eigenfunction is not finite as a half");
+    for (const float v : t.weightScale) require(v > 0.0f && std::isfinite(v), "a weight scale is not positive and finite");
+  }
+
+  void checkPrimitive(std::size_t index) const {
+    const auto& p = scene_.primitives[index];
+    const auto& t = transfer_.primitives[index];
+    const std::string label = "primitive " + std::to_string(index) + " (" + p.name + ")";
+    const std::size_t count = p.positions.size();
+    require(count > 0 && !p.indices.empty() && p.indices.size() % 3 == 0, label + " has no triangles");
+    require(p.normals.size() == count, label + " does not have one normal a vertex");
+    require(p.tangents.empty() || p.tangents.size() == count, label + " does not have one tangent a vertex");
+    require(p.texcoords.empty() || p.texcoords.size() == count, label + " does not have one texture coordinate a vertex");
+    require(p.mesh >= 0 && static_cast<std::size_t>(p.mesh) < scene_.meshNames.size(), label + " names a mesh that does not exist");
+    require(p.material == kNone || (p.material >= 0 && static_cast<std::size_t>(p.material) < scene_.materials.size()), label + " names a material that does not exist");
+    for (const auto i : p.indices) require(i < count, label + " has an index out of range");
+    for (const auto& v : p.positions) require(std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z), label + " has a position that is not finite");
+    for (const auto& v : p.normals) require(std::abs(glm::length(v) - 1.0f) <= 1e-3f, label + " has a normal that is not unit");
+    for (const auto& v : p.tangents) require(std::abs(glm::length(glm::vec3(v)) - 1.0f) <= 1e-3f && std::abs(v.w) == 1.0f, label + " has a tangent that is not unit");
+    for (const auto& v : p.texcoords) require(std::isfinite(v.x) && std::isfinite(v.y), label + " has a texture coordinate that is not finite");
+    const auto padded = static_cast<std::size_t>(transfer_.paddedTerms());
+    require(t.weights.size() == count * padded, label + " has the wrong number of weights");
+    require(t.visibility.size() == count * static_cast<std::size_t>(transfer_.directionCount), label + " has the wrong number of visible fractions");
+    for (std::size_t v = 0; v < count; ++v)
+      for (std::size_t k = static_cast<std::size_t>(transfer_.terms); k < padded; ++k)
+        require(t.weights[v * padded + k] == 0, label + " has weights that are not 0 behind the last term");
+  }
+
+  const Scene& scene_;
+  const Transfer& transfer_;
+  std::string where_;
+};
+
+/// More than the file will take, found before anything is allocated.
+std::uint64_t upperBound(const BakedScene& baked) {
+  const auto& t = baked.transfer;
+  std::uint64_t size = std::uint64_t{1} << 20;
+  const auto perVertex = static_cast<std::uint64_t>(2 * t.paddedTerms() + t.directionCount + 48);
+  for (const auto& p : baked.scene.primitives) size += p.positions.size() * perVertex + p.indices.size() * 4 + 4096;
+  for (const auto& image : baked.scene.images) size += image.bytes.size() + 1024;
+  return size + t.mean.size() * 4 + t.eigenfunctions.size() * 2;
+}
+
+/// Columns 4g..4g+3 of a row-major matrix.
+template <class T>
+std::vector<T> columnsOf4(const std::vector<T>& rows, std::size_t width, std::size_t group) {
+  std::vector<T> out;
+  const std::size_t count = rows.size() / width;
+  out.reserve(4 * count);
+  for (std::size_t v = 0; v < count; ++v) {
+    const auto first = rows.begin() + static_cast<std::ptrdiff_t>(v * width + 4 * group);
+    out.insert(out.end(), first, first + 4);
+  }
+  return out;
+}
+
+void addVertexTransfer(const Transfer& transfer, const PrimitiveTransfer& values, std::size_t vertexCount, const Json::json_pointer& place,
+                       GltfWriter& writer) {
+  const auto add = [&](const std::string& name, const auto& rows, std::size_t width, int componentType) {
+    for (std::size_t g = 0; 4 * g < width; ++g) {
+      const std::string attribute = name + std::to_string(g);
+      const int view = writer.addArray(columnsOf4(rows, width, g), attribute + " of " + place.to_string(), GltfWriter::Target::vertices);
+      writer.json[place]["attributes"][attribute] = writer.addAccessor(view, componentType, "VEC4", vertexCount, true);
+    }
+  };
+  add("_SSDF_", values.weights, static_cast<std::size_t>(transfer.paddedTerms()), kShort);
+  add("_VISIBILITY_", values.visibility, static_cast<std::size_t>(transfer.directionCount), kUnsignedByte);
+}
+
+Json extensionOf(const BakedScene& baked, GltfWriter& writer) {
+  const Transfer& transfer = baked.transfer;
+  Json out = Json::object();
+  out["version"] = kTransferVersion;
+  out["parameterization"] = kTransferParameterization;
+  out["resolution"] = transfer.resolution;
+  out["terms"] = transfer.terms;
+  out["directionCount"] = transfer.directionCount;
+  out["directionSharpness"] = transfer.directionSharpness;
+  if (!transfer.directions.empty()) out["directions"] = writer.addArray(transfer.directions, "directions");
+  if (!transfer.mean.empty()) out["mean"] = writer.addArray(transfer.mean, "mean");
+  if (transfer.terms > 0) {
+    std::vector<std::uint16_t> halves;
+    halves.reserve(transfer.eigenfunctions.size());
+    for (const float value : transfer.eigenfunctions) halves.push_back(Imath::half(value).bits());
+    out["eigenfunctions"] = writer.addArray(halves, "eigenfunctions");
+    out["weightScales"] = writer.addArray(transfer.weightScale, "weight scales");
+  }
+  out["facts"] = Json::object();
+  // JSON has no NaN and no infinity; null reads back as NaN.
+  for (const auto& [name, value] : baked.facts) out["facts"][name] = std::isfinite(value) ? Json(value) : Json(nullptr);
+  out["checksums"] = writer.checksums();
+  out["jsonChecksum"] = kNoChecksum;
+  return out;
+}
+
+/// The JSON text with its own checksum filled in. Padding belongs to the chunk, so it is summed too.
+std::string signedJson(const Json& json) {
+  std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  text.resize(aligned4(text.size()), ' ');
+  const std::string sum = checksumOf(std::string_view(text));
+  const std::size_t place = text.find(jsonChecksumMember(kNoChecksum));
+  return text.replace(place, jsonChecksumMember(sum).size(), jsonChecksumMember(sum));
+}
+
+}  // namespace
+
+void writeBakedScene(const std::filesystem::path& path, const BakedScene& baked, const std::string& generator) {
+  const std::string where = path.string();
+  FitCheck(baked, where).run();
+  if (upperBound(baked) > kLargestGlb)
+    throw Error(ExitCode::failed, where, "the baked scene is larger than 4 GiB, which a .glb cannot hold", "bake fewer terms or split the scene");
+
+  GltfWriter writer;
+  writer.json["asset"] = {{"version", "2.0"}, {"generator", generator}};
+  writer.json["extensionsUsed"] = {kTransferExtension};
+  const auto order = primitiveOrder(baked.scene);
+  const auto places = writeScene(baked.scene, order, writer);
+  for (std::size_t i = 0; i < order.size(); ++i)
+    addVertexTransfer(baked.transfer, baked.transfer.primitives[order[i]], baked.scene.primitives[order[i]].positions.size(), places[i], writer);
+  writer.json["extensions"][kTransferExtension] = extensionOf(baked, writer);
+  writer.json["buffers"] = Json::array({{{"byteLength", aligned4(writer.binary().size())}}});
+  writeFileAtomically(path, GltfWriter::container(signedJson(writer.json), writer.binary()));
+}
+
+}  // namespace chiaro
