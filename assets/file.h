@@ -13,8 +13,9 @@ namespace chiaro {
 /// The file's bytes. Throws Error (unreadableInput).
 std::vector<std::uint8_t> readFile(const std::filesystem::path& path);
 
-/// Replaces `path` by `bytes`: written beside it under a temporary name, flushed to disk, then renamed, so that a reader
-/// (or a kill at any moment) sees the old file or the whole new one. Throws Error (unwritableOutput); leaves no temporary behind.
+/// Replaces `path` by `bytes`: written to a nameless (else temporary) file in its folder, flushed to disk, then put in place,
+/// so that a reader (or a kill at any moment) sees the old file or the whole new one. Leaves nothing else behind, but for a
+/// kill between the last two system calls, which leaves a second whole copy. Throws Error (unwritableOutput).
 void writeFileAtomically(const std::filesystem::path& path, std::span<const std::uint8_t> bytes);
 void writeFileAtomically(const std::filesystem::path& path, std::string_view text);
 
