@@ -1,0 +1,65 @@
+#include "precompute/program/bake_json.h"
+
+#include <sys/resource.h>
+
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+namespace chiaro {
+
+std::string bakeJson(const BakeRun& run, const BakeReport& report) {
+  using Json = nlohmann::ordered_json;
+  Json errors = Json::object();
+  for (const auto& [name, value] : report.error) errors[name] = value;
+  const auto& repairs = report.repairs;
+  const auto& seconds = report.seconds;
+  const Json json = {
+      {"version", run.version},
+      {"input", run.input},
+      {"output", run.output},
+      {"vertices", report.vertices},
+      {"triangles", report.triangles},
+      {"resolution", run.settings.resolution},
+      {"terms", report.terms},
+      {"rays_traced", report.raysTraced},
+      {"bytes_per_vertex", report.bytesPerVertex},
+      {"peak_memory_bytes", run.peakMemoryBytes},
+      {"seconds",
+       {{"load", run.loadSeconds},
+        {"visibility", seconds.visibility},
+        {"ssdf", seconds.ssdf},
+        {"compression", seconds.compression},
+        {"write", run.writeSeconds},
+        {"total", run.loadSeconds + seconds.total + run.writeSeconds}}},
+      {"error", errors},
+      {"repairs",
+       {{"welded_vertices", repairs.weldedVertices},
+        {"isolated_vertices", repairs.isolatedVertices},
+        {"degenerate_triangles", repairs.degenerateTriangles},
+        {"duplicate_triangles", repairs.duplicateTriangles},
+        {"non_manifold_edges", repairs.nonManifoldEdges},
+        {"boundary_edges", repairs.boundaryEdges},
+        {"normals_computed", repairs.normalsComputed},
+        {"normals_repaired", repairs.normalsRepaired},
+        {"tangents_computed", repairs.tangentsComputed}}},
+      {"settings",
+       {{"resolution", run.settings.resolution},
+        {"terms", run.settings.terms},
+        {"directions", run.settings.directionCount},
+        {"direction_sharpness", run.settings.directionSharpness},
+        {"crease_angle_deg", static_cast<double>(run.settings.creaseAngle) * 180.0 / std::numbers::pi},
+        {"seed", run.settings.seed},
+        {"threads", run.settings.threads}}},
+      {"warnings", run.warnings},
+  };
+  // Names from a file system need not be UTF-8; the document must be.
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::size_t peakMemoryBytes() {
+  struct rusage usage {};
+  ::getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::size_t>(usage.ru_maxrss) * 1024;
+}
+
+}  // namespace chiaro

@@ -1,0 +1,174 @@
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <numbers>
+
+#include "assets/builtin/builtin_scene.h"
+#include "assets/file.h"
+#include "assets/program/interrupt.h"
+#include "assets/program/program.h"
+#include "assets/program/progress_bar.h"
+#include "assets/scene/load_scene.h"
+#include "assets/transfer/transfer.h"
+#include "precompute/bake.h"
+#include "precompute/program/bake_json.h"
+
+namespace {
+
+using namespace chiaro;
+
+constexpr const char* kExamples = R"(Examples:
+  chiaro-precompute scene.glb -o baked.glb
+  chiaro-precompute builtin:ornament -o ornament.glb
+  chiaro-precompute bunny.ply -o bunny.glb --terms 96 --json bake.json
+      more terms: sharper shadows of small lights, more bytes a vertex; bake.json says how far off each is
+  chiaro-precompute room.gltf -o room.glb --resolution 128 --threads 8
+  chiaro-view baked.glb
+      shows the result
+
+Scenes: .gltf, .glb, .obj, .ply, .off, .stl, or builtin:NAME.
+Exit codes: 0 done, 1 failed, 2 wrong usage, 3 unreadable input, 4 unwritable output, 130 interrupted (nothing is written).)";
+
+struct Options {
+  std::string scene;
+  std::filesystem::path output;
+  std::filesystem::path json;
+  BakeSettings settings;
+  double creaseAngleDegrees = 60.0;
+  bool quiet = false;
+  bool verbose = false;
+};
+
+void declare(CLI::App& app, Options& options) {
+  auto& settings = options.settings;
+  const auto shown = [](CLI::Option* option, const char* type) { option->type_name(type)->capture_default_str(); };
+  app.add_option("scene", options.scene, "Scene file, or builtin:NAME")->required()->type_name("FILE|builtin:NAME");
+  app.add_option("-o,--output", options.output, "Baked scene to write (.glb)")->required()->type_name("FILE");
+  app.add_option("--json", options.json, "Also write sizes, seconds, errors and repairs here")->type_name("FILE");
+
+  shown(app.add_option("--resolution", settings.resolution, "Texels a side of the octahedral sphere, 16 to 256, a multiple of 4"), "N");
+  shown(app.add_option("--terms", settings.terms, "Principal components kept, 1 to 256"), "K");
+  shown(app.add_option("--directions", settings.directionCount, "Broad lobes a vertex, 8 to 64, a multiple of 4"), "N");
+  shown(app.add_option("--crease-angle-deg", options.creaseAngleDegrees,
+                       "Where a file has no normals, edges bent by more than this stay sharp, 0 to 180"),
+        "A");
+  shown(app.add_option("--seed", settings.seed, "Of the random choices; the same seed gives the same file"), "N");
+  shown(app.add_option("--threads", settings.threads, "CPU threads, 0 is all; never changes the result"), "N");
+  auto* quiet = app.add_flag("-q,--quiet", options.quiet, "Print nothing but errors");
+  app.add_flag("-v,--verbose", options.verbose, "Print warnings and every figure")->excludes(quiet);
+}
+
+void finish(Options& options) {
+  auto& settings = options.settings;
+  const auto inRange = [](const char* name, double value, double least, double most) {
+    if (value >= least && value <= most) return;
+    char range[64];
+    std::snprintf(range, sizeof range, "give a value from %g to %g", least, most);
+    throw usageError(name, "is out of range", range);
+  };
+  inRange("--resolution", settings.resolution, 16, 256);
+  inRange("--terms", settings.terms, 1, 256);
+  inRange("--directions", settings.directionCount, 8, 64);
+  inRange("--crease-angle-deg", options.creaseAngleDegrees, 0, 180);
+  inRange("--threads", settings.threads, 0, 1024);
+  if (settings.resolution % 4 != 0) throw usageError("--resolution", "is not a multiple of 4", "use 32, 64, 128, ...");
+  if (settings.directionCount % 4 != 0) throw usageError("--directions", "is not a multiple of 4", "use 16, 32, 64, ...");
+  settings.creaseAngle = static_cast<float>(options.creaseAngleDegrees * std::numbers::pi / 180.0);
+
+  if (options.output.extension() != ".glb")
+    throw usageError("--output", "\"" + options.output.string() + "\" does not end in .glb", "name it so: it is a binary glTF");
+  if (!options.json.empty() && options.json == options.output)
+    throw usageError("--json", "names the same file as --output", "give two names");
+  // An hour's work should not be lost to a typing mistake.
+  requireWritable(options.output);
+  if (!options.json.empty()) requireWritable(options.json);
+}
+
+double secondsSince(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+void printRepairs(const RepairReport& repairs) {
+  const std::pair<std::size_t, const char*> counts[] = {
+      {repairs.weldedVertices, "equal vertices merged"},
+      {repairs.isolatedVertices, "unused vertices dropped"},
+      {repairs.degenerateTriangles, "triangles without area dropped"},
+      {repairs.duplicateTriangles, "repeated triangles dropped"},
+      {repairs.nonManifoldEdges, "non-manifold edges kept"},
+      {repairs.boundaryEdges, "boundary edges"},
+      {repairs.normalsComputed, "normals computed"},
+      {repairs.normalsRepaired, "normals repaired"},
+      {repairs.tangentsComputed, "tangents computed"},
+  };
+  for (const auto& [count, what] : counts)
+    if (count > 0) std::printf("  %zu %s\n", count, what);
+}
+
+void printSummary(const Options& options, const BakeRun& run, const BakeReport& report) {
+  std::printf("%s: %zu vertices, %zu triangles, %d terms, %.0f bytes a vertex, %.2f million rays, %.1f s\n", options.output.c_str(),
+              report.vertices, report.triangles, report.terms, report.bytesPerVertex, static_cast<double>(report.raysTraced) * 1e-6,
+              run.loadSeconds + report.seconds.total + run.writeSeconds);
+  if (options.verbose) {
+    std::printf("repairs:\n");
+    printRepairs(report.repairs);
+    std::printf("seconds:\n  visibility %.2f\n  ssdf %.2f\n  compression %.2f\n", report.seconds.visibility, report.seconds.ssdf,
+                report.seconds.compression);
+    std::printf("error:\n");
+    for (const auto& [name, value] : report.error) std::printf("  %-46s %.5f\n", name.c_str(), value);
+    std::printf("peak memory: %.0f MiB\n", static_cast<double>(run.peakMemoryBytes) / 1048576.0);
+  }
+}
+
+ExitCode precompute(int argc, char** argv) {
+  CLI::App app("Bakes the radiance transfer of a scene: what each vertex sees, compressed, in one .glb.", "chiaro-precompute");
+  app.footer(kExamples);
+  app.set_version_flag("--version", "chiaro-precompute " CHIARO_VERSION);
+  Options options;
+  declare(app, options);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& asked) {  // --help, --version
+    app.exit(asked, std::cout, std::cerr);
+    return ExitCode::done;
+  } catch (const CLI::ParseError& error) {
+    throw usageError("command line", error.what(), "see chiaro-precompute --help");
+  }
+  finish(options);
+  catchInterrupts();
+
+  ProgressBar bar(progressStyle(options.quiet));
+  BakeRun run{.input = options.scene, .output = options.output.string(), .version = CHIARO_VERSION, .settings = options.settings};
+  const auto loadStart = std::chrono::steady_clock::now();
+  const auto scene = isBuiltinName(options.scene) ? builtinScene(options.scene.substr(options.scene.find(':') + 1))
+                                                  : loadScene(options.scene, [&](const std::string& warning) {
+                                                      run.warnings.push_back(warning);
+                                                      if (options.verbose) std::fprintf(stderr, "warning: %s\n", warning.c_str());
+                                                    });
+  run.loadSeconds = secondsSince(loadStart);
+  throwIfInterrupted();
+
+  bar.setItems(scene.vertexCount(), "vertices");
+  BakeReport report;
+  const auto baked = bake(scene, options.settings, report, [&](const std::string& stage, double done) {
+    throwIfInterrupted();
+    bar.update(stage, done);
+  });
+  bar.clear();
+
+  const auto writeStart = std::chrono::steady_clock::now();
+  throwIfInterrupted();
+  writeBakedScene(options.output, baked, "chiaro-precompute " CHIARO_VERSION);
+  run.writeSeconds = secondsSince(writeStart);
+  run.peakMemoryBytes = peakMemoryBytes();
+  if (!options.json.empty()) writeFileAtomically(options.json, bakeJson(run, report));
+  if (!options.quiet) printSummary(options, run, report);
+  return ExitCode::done;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return chiaro::runMain("chiaro-precompute", [&] { return precompute(argc, argv); });
+}
