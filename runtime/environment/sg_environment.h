@@ -37,11 +37,12 @@ struct SgEnvironmentSettings {
   int lightCount = 12;               ///< at most; fewer when the environment has fewer bright spots
   float minLightSharpness = 20.0f;   ///< broader light stays in the residual
   float maxLightSharpness = 1e6f;
-  int finestResolution = 512;        ///< power of two
+  int finestResolution = 512;        ///< power of two; the finest sharpness is finestResolution^2 / 32 (8192)
   int threads = 0;
 };
 
 struct SgEnvironment {
+  ImageRgb radiance;                 ///< the equirectangular map itself: the background, and lobes sharper than the pyramid
   std::vector<SgLight> lights;       ///< brightest first (by flux)
   /// Of the whole environment, lights included. A shader that treats the lights apart subtracts their exact convolution
   /// (ALGORITHMS 1.4) where it needs the rest alone.
@@ -49,7 +50,14 @@ struct SgEnvironment {
 };
 
 /// Deterministic for any thread count. A constant environment gives that constant at every texel and no light.
+/// Throws Error: unreadableInput for an empty image or one with negative, infinite or undefined texels; usage for settings
+/// out of range (finestResolution: a power of two, 16..1024).
 SgEnvironment prepareEnvironment(const Environment& environment, const SgEnvironmentSettings& settings = {});
+
+/// How sharp the unfiltered map of this width is: a texel spread by linear interpolation has variance step^2/6 along each axis,
+/// so 6 (width / 2 pi)^2. A lobe sharper than the pyramid's finest level goes, linearly in log2 sharpness, from that level
+/// to the map itself, reached here; samplePyramid() stays at the finest level.
+float unfilteredSharpness(int equirectangularWidth);
 
 /// Trilinear-in-spirit lookup as the shader does it (bilinear in a face, linear in log2 sharpness): for tests and tools.
 glm::vec3 samplePyramid(const SgPyramid& pyramid, glm::vec3 direction, float sharpness);
