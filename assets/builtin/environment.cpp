@@ -69,14 +69,14 @@ const glm::dvec3 kSunColor(1.0, 0.93, 0.80);
 /// Sky and ground without the disc: blue overhead, pale where the path through the haze is long, brighter about the sun.
 glm::dvec3 clearSky(glm::dvec3 w) {
   const glm::dvec3 zenith(0.16, 0.34, 0.80);
-  const glm::dvec3 haze(0.78, 0.86, 0.95);
+  const glm::dvec3 haze(1.05, 1.12, 1.20);
   const double towardsSun = glm::dot(w, kSunDirection);
   if (w.y < 0.0) {
-    const glm::dvec3 earth = glm::dvec3(0.34, 0.29, 0.22) * (1.0 + 0.15 * towardsSun);
-    return glm::mix(earth, 0.62 * haze, std::exp(14.0 * w.y));
+    const glm::dvec3 earth = glm::dvec3(0.44, 0.37, 0.27) * (1.0 + 0.15 * towardsSun);
+    return glm::mix(earth, 0.8 * haze, std::exp(11.0 * w.y));
   }
   const double thickness = 1.0 / (w.y + 0.12);  // of the haze, in vertical depths
-  const double hazy = 1.0 - std::exp(-0.13 * thickness);
+  const double hazy = 1.0 - std::exp(-0.28 * thickness);
   const double aureole = 0.55 * std::exp(-9.0 * (1.0 - towardsSun)) + 2.2 * std::exp(-160.0 * (1.0 - towardsSun));
   const double rayleigh = 0.75 * (1.0 + towardsSun * towardsSun) / 1.5 + 0.25;
   return glm::mix(zenith, haze, hazy) * rayleigh + kSunColor * aureole;

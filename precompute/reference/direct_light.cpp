@@ -15,21 +15,21 @@ class LightGatherer {
  public:
   LightGatherer(const Surface& surface, glm::dvec3 wo, const EnvironmentSampler& environment, const RayScene* rays, Strategy strategy)
       : surface_(surface), wo_(wo * surface.worldFromTangent), environment_(environment), rays_(rays) {
-    environmentShare_ = environment.anyLight() && (strategy == Strategy::combined || strategy == Strategy::environment) ? 1.0 : 0.0;
-    brdfShare_ = strategy == Strategy::environment ? 0.0 : 1.0;
+    useEnvironment_ = environment.anyLight() && (strategy == Strategy::combined || strategy == Strategy::environment);
+    useBrdf_ = strategy != Strategy::environment;
     reflectionShare_ = strategy == Strategy::reflection ? 1.0 : strategy == Strategy::cosine ? 0.0 : reflectionShare(surface.brdf, wo_);
   }
 
   /// One sample of the radiance towards the viewer.
   glm::dvec3 draw(const PointSet& points, std::uint32_t index) {
     glm::dvec3 sum(0.0);
-    if (environmentShare_ > 0.0) {
-      const glm::dvec3 wi = environment_.sample(points.at(index, 0));
+    if (useEnvironment_) {
+      const glm::dvec3 wi = environment_.sample(points.pair(index, 0));
       sum += contribution(wi, wi * surface_.worldFromTangent);
     }
-    if (brdfShare_ > 0.0) {
-      const bool reflect = points.at(index, 2).x < reflectionShare_;
-      const glm::dvec2 random = points.at(index, 1);
+    if (useBrdf_) {
+      const bool reflect = points.single(index, 2) < reflectionShare_;
+      const glm::dvec2 random = points.pair(index, 1);
       const glm::dvec3 local = reflect ? sampleReflection(surface_.brdf, wo_, random) : sampleCosine(random);
       sum += contribution(surface_.worldFromTangent * local, local);
     }
@@ -43,11 +43,13 @@ class LightGatherer {
   glm::dvec3 contribution(glm::dvec3 wi, glm::dvec3 local) {
     const glm::dvec3 none(0.0);
     if (!(glm::dot(surface_.interpolatedNormal, wi) > 0.0)) return none;
-    const glm::dvec3 value = brdfTimesCosine(surface_.brdf, wo_, local) * environment_.radiance(wi);
+    const glm::dvec3 reflected = brdfTimesCosine(surface_.brdf, wo_, local);
+    if (!(reflected.x + reflected.y + reflected.z > 0.0)) return none;
+    const EnvironmentSampler::Light light = environment_.at(wi);
+    const glm::dvec3 value = reflected * light.radiance;
     if (!(value.x + value.y + value.z > 0.0)) return none;
-    double density = 0.0;
-    if (environmentShare_ > 0.0) density += environment_.density(wi);
-    if (brdfShare_ > 0.0) {
+    double density = useEnvironment_ ? light.density : 0.0;
+    if (useBrdf_) {
       density += reflectionShare_ * reflectionDensity(surface_.brdf, wo_, local) + (1.0 - reflectionShare_) * cosineDensity(local);
     }
     if (!(density > 0.0)) return none;
@@ -64,8 +66,8 @@ class LightGatherer {
   glm::dvec3 wo_;  ///< in the tangent frame
   const EnvironmentSampler& environment_;
   const RayScene* rays_;
-  double environmentShare_ = 1.0;
-  double brdfShare_ = 1.0;
+  double useEnvironment_ = 1.0;
+  bool useBrdf_ = true;
   double reflectionShare_ = 0.5;
   std::uint64_t rayCount_ = 0;
 };

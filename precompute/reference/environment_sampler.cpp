@@ -29,6 +29,7 @@ EnvironmentSampler::EnvironmentSampler(const Environment& environment, const glm
     const glm::dvec3 value(image.at((x + width_) % width_, std::clamp(y, 0, height_ - 1)));
     return value.x + value.y + value.z;
   };
+  for (int y = 0; y <= height_; ++y) cosines_.push_back(std::cos(kPi * y / height_));
   rows_.assign(static_cast<std::size_t>(height_) + 1, 0.0);
   columns_.assign(static_cast<std::size_t>(height_) * (static_cast<std::size_t>(width_) + 1), 0.0f);
   std::vector<double> vertical(static_cast<std::size_t>(width_));
@@ -44,16 +45,12 @@ EnvironmentSampler::EnvironmentSampler(const Environment& environment, const glm
     const double rowSum = sums.back();
     float* row = &columns_[static_cast<std::size_t>(y) * sums.size()];
     if (rowSum > 0.0) std::ranges::transform(sums, row, [&](double sum) { return static_cast<float>(sum / rowSum); });
-    total_ += rowSum * rowSolidAngle(y);
+    total_ += rowSum * (cosines_[static_cast<std::size_t>(y)] - cosines_[static_cast<std::size_t>(y) + 1]);
     rows_[static_cast<std::size_t>(y) + 1] = total_;
   }
   if (total_ > 0.0) {
     for (double& row : rows_) row /= total_;
   }
-}
-
-double EnvironmentSampler::rowSolidAngle(int row) const {
-  return 2.0 * kPi / width_ * (std::cos(kPi * row / height_) - std::cos(kPi * (row + 1) / height_));
 }
 
 glm::dvec2 EnvironmentSampler::texelCoordinates(glm::dvec3 direction) const {
@@ -63,8 +60,13 @@ glm::dvec2 EnvironmentSampler::texelCoordinates(glm::dvec3 direction) const {
   return {u * width_, v * height_};
 }
 
-glm::dvec3 EnvironmentSampler::radiance(glm::dvec3 direction) const {
-  const glm::dvec2 at = texelCoordinates(direction) - 0.5;
+EnvironmentSampler::Light EnvironmentSampler::at(glm::dvec3 direction) const {
+  const glm::dvec2 place = texelCoordinates(direction);
+  return {bilinear(place), density(place)};
+}
+
+glm::dvec3 EnvironmentSampler::bilinear(glm::dvec2 texelCoordinates) const {
+  const glm::dvec2 at = texelCoordinates - 0.5;
   const glm::dvec2 corner = glm::floor(at);
   const glm::dvec2 f = at - corner;
   const int left = (static_cast<int>(corner.x) + width_) % width_;
@@ -79,21 +81,21 @@ glm::dvec3 EnvironmentSampler::radiance(glm::dvec3 direction) const {
 glm::dvec3 EnvironmentSampler::sample(glm::dvec2 random) const {
   const auto [row, rowPosition] = invert(rows_.data(), height_, random.y);
   const auto [column, columnPosition] = invert(cumulative(row), width_, random.x);
-  const double cosine = std::lerp(std::cos(kPi * row / height_), std::cos(kPi * (row + 1) / height_), rowPosition);
+  const double cosine = std::lerp(cosines_[static_cast<std::size_t>(row)], cosines_[static_cast<std::size_t>(row) + 1], rowPosition);
   const double sine = std::sqrt(std::max(0.0, (1.0 - cosine) * (1.0 + cosine)));
   const double azimuth = 2.0 * kPi * ((column + columnPosition) / width_ - 0.5);
   return worldFromEnvironment_ * glm::dvec3(sine * std::sin(azimuth), cosine, -sine * std::cos(azimuth));
 }
 
-double EnvironmentSampler::density(glm::dvec3 direction) const {
+double EnvironmentSampler::density(glm::dvec2 at) const {
   if (!anyLight()) return 0.0;
-  const glm::dvec2 at = texelCoordinates(direction);
   const int column = std::clamp(static_cast<int>(at.x), 0, width_ - 1);
   const int row = std::clamp(static_cast<int>(at.y), 0, height_ - 1);
   // The differences of the stored lists, so that this is the density of `sample` exactly, rounding included.
   const double rowShare = rows_[static_cast<std::size_t>(row) + 1] - rows_[static_cast<std::size_t>(row)];
   const double columnShare = static_cast<double>(cumulative(row)[column + 1]) - static_cast<double>(cumulative(row)[column]);
-  return rowShare * columnShare / rowSolidAngle(row);
+  const double solidAngle = 2.0 * kPi / width_ * (cosines_[static_cast<std::size_t>(row)] - cosines_[static_cast<std::size_t>(row) + 1]);
+  return rowShare * columnShare / solidAngle;
 }
 
 }  // namespace chiaro::reference

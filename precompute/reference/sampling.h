@@ -2,6 +2,7 @@
 /// Random numbers that belong to a place in the picture and not to a thread: Owen-scrambled Sobol' points by hashing
 /// (Burley, Practical Hash-based Owen Scrambling, JCGT 9(4), 2020; hash constants of Vegdahl's refinement).
 
+#include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
 
@@ -36,16 +37,27 @@ inline std::uint32_t owenScramble(std::uint32_t x, std::uint32_t seed) {
   return reverseBits(x);
 }
 
-/// One randomised point set; sets of different seeds are independent.
+/// One randomised point set of a few dimensions; sets of different seeds are independent.
 class PointSet {
  public:
-  explicit PointSet(std::uint32_t seed) : seed_(seed) {}
+  static constexpr std::uint32_t kSequences = 3;
 
-  /// Point `index` of the two-dimensional (0,2)-sequence number `pair`, in [0,1)^2. Different pairs are shuffled differently.
-  glm::dvec2 at(std::uint32_t index, std::uint32_t pair) const {
-    const std::uint32_t pairSeed = hashWords(seed_, pair);
-    const std::uint32_t shuffled = reverseBits(owenScramble(reverseBits(index), hashWords(pairSeed, 0x51ed270bu)));
-    return {fraction(owenScramble(reverseBits(shuffled), hashWords(pairSeed, 1u))), fraction(owenScramble(secondSobol(shuffled), hashWords(pairSeed, 2u)))};
+  explicit PointSet(std::uint32_t seed) {
+    for (std::uint32_t i = 0; i < kSequences; ++i) {
+      const std::uint32_t sequenceSeed = hashWords(seed, i);
+      seeds_[i] = {hashWords(sequenceSeed, 0u), hashWords(sequenceSeed, 1u), hashWords(sequenceSeed, 2u)};
+    }
+  }
+
+  /// Point `index` of the two-dimensional (0,2)-sequence number `sequence`, in (0,1)^2. Each sequence is shuffled by itself, so that
+  /// they can be used side by side as further dimensions.
+  glm::dvec2 pair(std::uint32_t index, std::uint32_t sequence) const {
+    const std::uint32_t shuffled = shuffle(index, sequence);
+    return {fraction(owenScramble(reverseBits(shuffled), seeds_[sequence].first)), fraction(owenScramble(secondSobol(shuffled), seeds_[sequence].second))};
+  }
+  /// Its first coordinate.
+  double single(std::uint32_t index, std::uint32_t sequence) const {
+    return fraction(owenScramble(reverseBits(shuffle(index, sequence)), seeds_[sequence].first));
   }
 
  private:
@@ -58,7 +70,14 @@ class PointSet {
   }
   static double fraction(std::uint32_t bits) { return (static_cast<double>(bits) + 0.5) * 0x1p-32; }
 
-  std::uint32_t seed_;
+  std::uint32_t shuffle(std::uint32_t index, std::uint32_t sequence) const {
+    return owenScramble(index, seeds_[sequence].order);  // keeps every aligned block of 2^k indices together, so nets stay nets
+  }
+
+  struct Seeds {
+    std::uint32_t order, first, second;
+  };
+  std::array<Seeds, kSequences> seeds_;
 };
 
 }  // namespace chiaro::reference
