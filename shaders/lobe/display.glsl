@@ -42,10 +42,12 @@ FN Vec3 toneMapAces(IN(Vec3) color) {
 
 // The sRGB transfer function (IEC 61966-2-1), [0, 1] to [0, 1]; NaN stays NaN.
 FN Real srgbEncode(IN(Real) linear) {
+  if (isNotANumber(linear)) return linear;  // pow may lose it
   Real x = clampReal(linear, Real(0.0), Real(1.0));
   return x <= Real(0.0031308) ? Real(12.92) * x : Real(1.055) * pow(x, Real(1.0 / 2.4)) - Real(0.055);
 }
 FN Real srgbDecode(IN(Real) encoded) {
+  if (isNotANumber(encoded)) return encoded;
   Real x = clampReal(encoded, Real(0.0), Real(1.0));
   return x <= Real(0.04045) ? x / Real(12.92) : pow((x + Real(0.055)) / Real(1.055), Real(2.4));
 }

@@ -37,7 +37,8 @@ FN Vec3 anyTangent(IN(Vec3) n) {
 
 // Unit component of wo across n; any tangent when wo is along n (the lobes are then symmetric about n).
 FN Vec3 incidenceTangent(IN(Vec3) n, IN(Vec3) wo) {
-  Vec3 across = wo - n * dot(n, wo);
+  Vec3 e = wo - n;  // exact where wo is nearly n; wo - n dot(n, wo) would cancel
+  Vec3 across = e - n * dot(n, e);
   Real length2 = dot(across, across);
   if (length2 < Real(1.0e-8)) return anyTangent(n);
   return across * (Real(1.0) / sqrt(length2));

@@ -1,0 +1,68 @@
+#pragma once
+/// A baked scene in GPU memory.
+
+#include <array>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "assets/transfer/transfer.h"
+#include "runtime/gl/buffer.h"
+#include "runtime/gl/texture.h"
+
+namespace chiaro {
+
+struct GpuDraw {
+  int firstIndex = 0;
+  int indexCount = 0;
+  int material = 0;       ///< into the material buffer; the last one is the glTF default
+  glm::vec3 center{0.0f};
+};
+
+class GpuScene {
+ public:
+  /// Throws Error when an image cannot be decoded or the driver's limits are too small.
+  explicit GpuScene(const BakedScene& baked);
+
+  void setMaterials(const std::vector<Material>& materials);
+  /// Geometry, transfer and materials to their binding points.
+  void bindBuffers() const;
+  /// The five textures of a material to units 0..4.
+  void bindTextures(int material) const;
+
+  const std::vector<GpuDraw>& draws() const { return draws_; }
+  const Material& material(int index) const { return materials_[static_cast<std::size_t>(index)]; }
+  int termVectors() const { return termVectors_; }
+  int directionVectors() const { return directionVectors_; }
+  float directionSharpness() const { return directionSharpness_; }
+  const std::vector<glm::vec3>& directions() const { return directions_; }
+  const Bounds& bounds() const { return bounds_; }
+  std::size_t bytes() const { return bytes_; }
+
+  /// Mean and weight-scaled eigenfunctions at a world direction, as the shader's bilinear lookup reads them: the mean, then
+  /// 4 * termVectors() values.
+  std::vector<float> eigenAt(glm::vec3 direction) const;
+  void bindTransferTextures() const;
+
+ private:
+  void uploadGeometry(const Scene& scene);
+  void uploadTransfer(const BakedScene& baked);
+  void uploadTextures(const Scene& scene);
+  void writeMaterials();
+
+  std::vector<GpuDraw> draws_;
+  std::vector<Material> materials_;  // the scene's, then the default
+  std::vector<Light> lights_;
+  Bounds bounds_;
+  int resolution_ = 0, termVectors_ = 0, directionVectors_ = 0;
+  float directionSharpness_ = 0.0f;
+  std::vector<glm::vec3> directions_;
+  std::vector<float> mean_;            // bordered, (resolution + 2)^2
+  std::vector<glm::vec4> eigen_;       // bordered, termVectors layers
+  gl::Buffer vertices_, indices_, materialBuffer_, weights_, visibility_;
+  gl::Texture eigenTexture_, meanTexture_, white_;
+  std::vector<gl::Texture> textures_;
+  std::vector<std::array<int, 5>> materialTextures_;  // into textures_, or kNone
+  std::size_t bytes_ = 0;
+};
+
+}  // namespace chiaro

@@ -1,0 +1,9 @@
+#version 450 core
+#include "shaders/stage/material.glsl"
+
+in vec2 texcoord;
+
+void main() {
+  MaterialBlock m = materials[materialIndex];
+  if (m.textures.y == 1 && baseColorAt(m, texcoord).a < m.emissive.w) discard;
+}

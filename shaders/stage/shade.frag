@@ -1,0 +1,117 @@
+#version 450 core
+#include "shaders/stage/frame.glsl"
+#include "shaders/stage/geometry.glsl"
+#include "shaders/stage/material.glsl"
+#include "shaders/stage/shade.glsl"
+#include "shaders/lobe/display.glsl"
+
+in vec3 worldPosition;
+in vec3 worldNormal;
+in vec4 worldTangent;
+in vec2 texcoord;
+
+uniform int firstIndex;  // of this draw in the index list
+
+layout(location = 0) out vec4 color;
+
+const int kDebugAlbedo = 1;
+const int kDebugNormal = 2;
+const int kDebugRoughness = 3;
+const int kDebugVisibility = 4;
+const int kDebugSsdf = 5;
+
+// Area coordinates of the shaded point, from its position: exact derivatives of nothing are needed, and no varying per weight.
+vec3 barycentricOf(uvec3 corners, vec3 p) {
+  vec3 a = vertices[corners.x].positionU.xyz;
+  vec3 e1 = vertices[corners.y].positionU.xyz - a;
+  vec3 e2 = vertices[corners.z].positionU.xyz - a;
+  vec3 q = p - a;
+  vec3 normal = cross(e1, e2);
+  float scale = dot(normal, normal);
+  if (!(scale > 0.0)) return vec3(1.0, 0.0, 0.0);
+  float v = clamp(dot(cross(q, e2), normal) / scale, 0.0, 1.0);
+  float w = clamp(dot(cross(e1, q), normal) / scale, 0.0, 1.0 - v);
+  return vec3(1.0 - v - w, v, w);
+}
+
+Surface surfaceHere(MaterialBlock m, vec4 baseColor) {
+  Surface s;
+  s.position = worldPosition;
+  s.wo = frame.eye.w > 0.5 ? normalize(frame.eye.xyz - worldPosition) : frame.eye.xyz;
+  vec3 normal = normalize(worldNormal);
+  bool framed = worldTangent.w != 0.0;
+  vec3 tangent = framed ? worldTangent.xyz - normal * dot(normal, worldTangent.xyz) : anyTangent(normal);
+  tangent = normalize(dot(tangent, tangent) > 1.0e-12 ? tangent : anyTangent(normal));
+  vec3 bitangent = cross(normal, tangent) * (worldTangent.w < 0.0 ? -1.0 : 1.0);
+  float side = gl_FrontFacing ? 1.0 : -1.0;
+
+  vec3 n = normal;
+  s.bumped = hasTexture(m, kHasNormal) && framed;
+  if (s.bumped) {
+    vec3 mapped = texture(normalTexture, texcoord).xyz * (255.0 / 127.0) - 128.0 / 127.0;
+    mapped.xy *= m.surface.z;
+    n = tangent * mapped.x + bitangent * mapped.y + normal * mapped.z;
+    n = dot(n, n) > 1.0e-12 ? normalize(n) : normal;
+  }
+  s.ng = normal * side;
+  s.n = shadingNormalTowards(n * side, s.wo);
+
+  float metallic = m.surface.x;
+  s.roughness = m.surface.y;
+  if (hasTexture(m, kHasMetallicRoughness)) {
+    vec4 texel = texture(metallicRoughnessTexture, texcoord);
+    s.roughness *= texel.g;
+    metallic *= texel.b;
+  }
+  s.roughness = clamp(s.roughness, 0.0, 1.0);
+  float alpha = clampAlpha(s.roughness * s.roughness);
+  s.alphaT = alpha;
+  s.alphaB = alpha;
+  vec2 direction = m.anisotropy.xy;
+  float strength = m.surface.w;
+  if (strength > 0.0) {
+    if (hasTexture(m, kHasAnisotropy)) {
+      vec3 texel = texture(anisotropyTexture, texcoord).xyz;
+      vec2 local = texel.xy * (255.0 / 127.0) - 128.0 / 127.0;
+      direction = vec2(m.anisotropy.x * local.x - m.anisotropy.y * local.y, m.anisotropy.y * local.x + m.anisotropy.x * local.y);
+      strength *= texel.z;
+    }
+    s.alphaT = mix(alpha, 1.0, strength * strength);
+  }
+  vec3 along = tangent * direction.x + bitangent * direction.y;
+  along -= s.n * dot(s.n, along);
+  s.t = dot(along, along) > 1.0e-12 ? normalize(along) : anyTangent(s.n);
+  s.b = cross(s.n, s.t);
+
+  s.f0 = mix(vec3(0.04), baseColor.rgb, metallic);
+  s.diffuse = baseColor.rgb * ((1.0 - metallic) * 0.96);
+  return s;
+}
+
+vec3 signColor(float distance) {
+  float x = distance / kHalfPi;
+  return x > 0.0 ? mix(vec3(0.97), vec3(0.13, 0.4, 0.67), x) : mix(vec3(0.97), vec3(0.7, 0.09, 0.17), -x);
+}
+
+void main() {
+  MaterialBlock m = materials[materialIndex];
+  vec4 baseColor = baseColorAt(m, texcoord);
+  if (m.textures.y == 1 && baseColor.a < m.emissive.w) discard;
+
+  int first = firstIndex + 3 * gl_PrimitiveID;
+  uvec3 corners = uvec3(indices[first], indices[first + 1], indices[first + 2]);
+  Transfer t = transferAt(corners, barycentricOf(corners, worldPosition));
+  Surface s = surfaceHere(m, baseColor);
+
+  vec3 radiance;
+  int debugView = frame.counts.z;
+  if (debugView == kDebugAlbedo) radiance = baseColor.rgb;
+  else if (debugView == kDebugNormal) radiance = 0.5 * s.n + 0.5;
+  else if (debugView == kDebugRoughness) radiance = vec3(s.roughness);
+  else if (debugView == kDebugVisibility) radiance = vec3(broadVisibility(t, s.ng));
+  else if (debugView == kDebugSsdf) radiance = signColor(ssdfAt(t, 2.0 * dot(s.n, s.wo) * s.n - s.wo));
+  else {
+    radiance = shade(s, t) + m.emissive.rgb * (hasTexture(m, kHasEmissive) ? texture(emissiveTexture, texcoord).rgb : vec3(1.0));
+  }
+  color = vec4(radiance, m.textures.y == 2 ? baseColor.a : 1.0);
+}

@@ -1,0 +1,265 @@
+// One surface point lit by everything: shade() is all there is, so that any stage may call it.
+//
+// The environment is split into SG lights (suns, windows, lamps) and the rest. Per part of the reflection:
+//  * diffuse: each light by its clamped-cosine integral and its own shadow from the SSDF; the rest by fixed lobes, whose visible fractions
+//    the vertices hold, on top of an exact unshadowed irradiance.
+//  * smooth reflection: the view's SG lobes; each takes the prefiltered environment times its visible fraction, and where a light's shadow
+//    differs from the lobe's, the difference on that light's share (exact SG product).
+//  * rough reflection: the BRDF itself at the lights and at the fixed lobes; SG lobes fit it poorly there.
+#include "shaders/lobe/specular.glsl"
+#include "shaders/lobe/sh.glsl"
+#include "shaders/lobe/display.glsl"
+#include "shaders/stage/transfer.glsl"
+#include "shaders/stage/environment.glsl"
+
+layout(binding = 9) uniform sampler2DArray specularTable;  // runtime/brdf/specular_table.h
+layout(binding = 10) uniform sampler2D albedoTable;
+
+const int kTableLobes = 20;
+const int kAnisotropicTerms = 4;
+const int kAnisotropicParts = 5;
+// Perceptual roughness from which the reflection passes from SG lobes to the BRDF at fixed lobes.
+const float kRoughFrom = 0.45;
+const float kRoughTo = 0.6;
+// Lobes broader than this see the vertex's visible fractions instead of the half-space picture of the SSDF.
+const float kBroadFrom = 4.0;
+const float kBroadTo = 16.0;
+// A punctual light's shadow edge is as sharp as the stored sphere resolves.
+const float kPunctualSharpness = 3000.0;
+
+struct Surface {
+  vec3 position;
+  vec3 ng;          // interpolated normal, towards the viewer's side
+  vec3 n;           // with the normal map
+  vec3 t;           // across n, along the anisotropy
+  vec3 b;
+  vec3 wo;
+  vec3 diffuse;     // base colour of the diffuse part
+  vec3 f0;
+  float roughness;  // perceptual
+  float alphaT;
+  float alphaB;
+  bool bumped;      // n may differ from ng
+};
+
+bool anisotropic(Surface s) { return s.alphaT != s.alphaB; }
+
+vec3 samplePoint2(sampler2D table, vec2 unit, out vec2 at) {
+  vec2 size = vec2(textureSize(table, 0));
+  at = (unit * (size - 1.0) + 0.5) / size;
+  return textureLod(table, at, 0.0).rgb;
+}
+
+vec3 albedoAt(float roughness, float cosineOut) {
+  vec2 at;
+  return samplePoint2(albedoTable, vec2(roughness, sqrt(cosineOut)), at);
+}
+
+// What the geometric horizon takes from a lobe that the shading normal let through (1 without a normal map).
+float horizonShare(Surface s, vec3 axis, float sharpness) {
+  if (!s.bumped) return 1.0;
+  float geometric = sgHalfSpaceFraction(dot(s.ng, axis), sharpness);
+  float shading = sgHalfSpaceFraction(dot(s.n, axis), sharpness);
+  return min(1.0, geometric / max(shading, 1.0e-3));
+}
+
+bool shadowed() { return (uint(frame.counts.w) & kFlagShadows) != 0u; }
+
+float visibleFraction(float distance, float sharpness) { return shadowed() ? ssdfVisibleFraction(distance, sharpness) : 1.0; }
+
+float fixedVisibility(Transfer t, int j) { return shadowed() ? t.visibility[j >> 2][j & 3] : 1.0; }
+
+// Visible fraction of a broad lobe about `axis`, from the fixed lobes.
+float broadVisibility(Transfer t, vec3 axis) {
+  float sum = 0.0, weight = 0.0;
+  for (int j = 0; j < 4 * DIRECTION_VECTORS; ++j) {
+    float w = exp(8.0 * (dot(axis, frame.directions[j].xyz) - 1.0));
+    sum += w * fixedVisibility(t, j);
+    weight += w;
+  }
+  return sum / weight;
+}
+
+// Mean radiance of light `l` alone under a normalised lobe, and the sharpness of their product.
+vec3 lightMean(int l, vec3 axis, float sharpness, out float productSharpness) {
+  vec4 light = frame.sgLights[l].axisSharpness;
+  SphericalGaussian product = sgProductLog(axis, sharpness, light.xyz, light.w);
+  productSharpness = product.sharpness;
+  return frame.sgLights[l].amplitude.rgb * exp(product.amplitude) * oneMinusExpOver(2.0 * product.sharpness)
+       / oneMinusExpOver(2.0 * sharpness);
+}
+
+// Light that arrives through one reflection lobe.
+vec3 lobeRadiance(Surface s, Transfer t, vec3 axis, float sharpness, float broad) {
+  float distance = ssdfAt(t, axis);
+  float own = mix(broad, visibleFraction(distance, sharpness), smoothstep(log2(kBroadFrom), log2(kBroadTo), log2(sharpness)));
+  vec3 radiance = environmentMean(axis, sharpness) * own;
+#if TERM_VECTORS > 0
+  if (shadowed()) {
+    for (int l = 0; l < frame.counts.x; ++l) {
+      float productSharpness;
+      vec3 mean = lightMean(l, axis, sharpness, productSharpness);
+      if (largestOf(mean) < 1.0e-5 * frame.sgLights[l].amplitude.r) continue;
+      // The distance is 1-Lipschitz: between the two known axes it is close to linear.
+      float lightSharpness = frame.sgLights[l].axisSharpness.w;
+      float between = mix(distance, ssdfAtLight(t, l), lightSharpness / (sharpness + lightSharpness));
+      radiance += mean * (ssdfVisibleFraction(between, productSharpness) - own);
+    }
+  }
+#endif
+  return max(radiance, vec3(0.0)) * horizonShare(s, axis, sharpness);
+}
+
+vec3 diffuseLight(Surface s, Transfer t) {
+  int count = 4 * DIRECTION_VECTORS;
+  float directionSharpness = frame.pyramid.w;
+  vec3 seen = vec3(0.0), all = vec3(0.0);
+  float seenWeight = 0.0, allWeight = 0.0;
+  for (int j = 0; j < count; ++j) {
+    vec3 axis = frame.directions[j].xyz;
+    float w = clampedCosineMean(dot(s.n, axis), directionSharpness);
+    float v = fixedVisibility(t, j) * horizonShare(s, axis, directionSharpness);
+    vec3 radiance = frame.restRadiance[j].rgb;
+    seen += radiance * (w * v);
+    all += radiance * w;
+    seenWeight += w * v;
+    allWeight += w;
+  }
+  // What the few fixed lobes miss of the exact irradiance gets their mean visibility.
+  float basis[25];
+  shEvaluate(s.n, basis);
+  vec3 exact = vec3(0.0);
+  for (int i = 0; i < 25; ++i) exact += basis[i] * frame.irradiance[i].rgb;
+  float solidAngle = kFourPi / float(count);
+  vec3 irradiance = seen * solidAngle + (exact - all * solidAngle) * (seenWeight / max(allWeight, 1.0e-6));
+  irradiance = max(irradiance, vec3(0.0));
+  for (int l = 0; l < frame.counts.x; ++l) {
+    vec4 light = frame.sgLights[l].axisSharpness;
+    float cosineMean = clampedCosineMean(dot(s.n, light.xyz), light.w);
+    if (cosineMean < 1.0e-5) continue;
+    float v = visibleFraction(ssdfAtLight(t, l), light.w) * horizonShare(s, light.xyz, light.w);
+    irradiance += frame.sgLights[l].amplitude.rgb * (sgUnitIntegral(light.w) * cosineMean * v);
+  }
+  return irradiance;
+}
+
+// D V of the GGX reflection and Fc = (1 - wo.wh)^5, for the surface's two alphas.
+float reflectance(Surface s, vec3 wi, float alphaT, float alphaB, out float fresnel) {
+  vec3 wh = s.wo + wi;
+  wh *= inversesqrt(max(dot(wh, wh), 1.0e-12));
+  fresnel = fresnelSchlickWeight(dot(s.wo, wh));
+  float cosineIn = max(dot(s.n, wi), 0.0);
+  float cosineOut = dot(s.n, s.wo);
+  if (alphaT == alphaB) return ggxDistribution(max(dot(s.n, wh), 0.0), alphaT) * ggxVisibility(cosineOut, cosineIn, alphaT);
+  vec3 localHalf = vec3(dot(wh, s.t), dot(wh, s.b), max(dot(wh, s.n), 0.0));
+  vec3 localOut = vec3(dot(s.wo, s.t), dot(s.wo, s.b), cosineOut);
+  vec3 localIn = vec3(dot(wi, s.t), dot(wi, s.b), cosineIn);
+  return ggxDistributionAnisotropic(localHalf, alphaT, alphaB) * ggxVisibilityAnisotropic(localOut, localIn, alphaT, alphaB);
+}
+
+vec3 roughReflection(Surface s, Transfer t, vec3 albedo) {
+  float directionSharpness = frame.pyramid.w;
+  vec3 base = vec3(0.0), edge = vec3(0.0);
+  float baseWeight = 0.0, edgeWeight = 0.0;
+  for (int j = 0; j < 4 * DIRECTION_VECTORS; ++j) {
+    vec3 axis = frame.directions[j].xyz;
+    float cosineMean = clampedCosineMean(dot(s.n, axis), directionSharpness);
+    if (cosineMean < 1.0e-5) continue;
+    // The cosine-weighted middle of the lobe: for one that the horizon cuts, not its axis.
+    float fresnel;
+    float w = cosineMean * reflectance(s, cosineWeightedAxis(axis, directionSharpness, s.n), s.alphaT, s.alphaB, fresnel);
+    vec3 radiance = frame.restRadiance[j].rgb * (fixedVisibility(t, j) * horizonShare(s, axis, directionSharpness));
+    base += radiance * (w * (1.0 - fresnel));
+    edge += radiance * (w * fresnel);
+    baseWeight += w * (1.0 - fresnel);
+    edgeWeight += w * fresnel;
+  }
+  vec3 result = s.f0 * base * (albedo.x / max(baseWeight, 1.0e-6)) + edge * (albedo.y / max(edgeWeight, 1.0e-6));
+  result = max(result, vec3(0.0));
+  for (int l = 0; l < frame.counts.x; ++l) {
+    vec4 light = frame.sgLights[l].axisSharpness;
+    float cosineMean = clampedCosineMean(dot(s.n, light.xyz), light.w);
+    if (cosineMean < 1.0e-5) continue;
+    float fresnel;
+    float f = reflectance(s, cosineWeightedAxis(light.xyz, light.w, s.n), alphaUnderLight(s.alphaT, light.w), alphaUnderLight(s.alphaB, light.w), fresnel);
+    float v = visibleFraction(ssdfAtLight(t, l), light.w) * horizonShare(s, light.xyz, light.w);
+    result += frame.sgLights[l].amplitude.rgb * (sgUnitIntegral(light.w) * cosineMean * f * v) * (s.f0 * (1.0 - fresnel) + fresnel);
+  }
+  return result;
+}
+
+vec3 smoothReflection(Surface s, Transfer t, vec3 albedo) {
+  float cosineOut = dot(s.n, s.wo);
+  vec3 x = incidenceTangent(s.n, s.wo);
+  float broad = broadVisibility(t, s.n * (2.0 * cosineOut) - s.wo);
+  vec3 base = vec3(0.0), edge = vec3(0.0);
+  if (!anisotropic(s)) {
+    vec2 at;
+    vec2 unit = specularTableCoordinate(s.roughness, cosineOut);
+    vec2 size = vec2(textureSize(specularTable, 0).xy);
+    at = (unit * (size - 1.0) + 0.5) / size;
+    float least = 1.0e-3 * (albedo.x + albedo.y);
+    for (int k = 0; k < kTableLobes; ++k) {
+      vec4 entry = textureLod(specularTable, vec3(at, float(k)), 0.0);
+      if (entry.z + entry.w < least) continue;
+      SpecularLobe lobe = specularTableLobe(entry, s.n, x, cosineOut, s.alphaT);
+      vec3 radiance = lobeRadiance(s, t, lobe.axis, lobe.sharpness, broad);
+      base += radiance * lobe.weight;
+      edge += radiance * lobe.fresnelWeight;
+    }
+    return s.f0 * base + edge;
+  }
+  float baseWeight = 0.0, edgeWeight = 0.0;
+  for (int j = 0; j < kAnisotropicTerms; ++j) {
+    ElongatedLobe elongated = ggxWarpedTerm(ggxMixtureTerm(kAnisotropicTerms, j), s.n, s.t, s.b, s.alphaT, s.alphaB, x, s.wo);
+    for (int k = 0; k < kAnisotropicParts; ++k) {
+      SpecularLobe lobe = elongatedPart(elongated, kAnisotropicParts, k, s.n, s.t, s.b, s.alphaT, s.alphaB, s.wo);
+      if (!(lobe.weight + lobe.fresnelWeight > 1.0e-4)) continue;
+      vec3 radiance = lobeRadiance(s, t, lobe.axis, lobe.sharpness, broad);
+      base += radiance * lobe.weight;
+      edge += radiance * lobe.fresnelWeight;
+      baseWeight += lobe.weight;
+      edgeWeight += lobe.fresnelWeight;
+    }
+  }
+  return s.f0 * base * (albedo.x / max(baseWeight, 1.0e-6)) + edge * (albedo.y / max(edgeWeight, 1.0e-6));
+}
+
+vec3 punctualLight(Surface s, Transfer t, vec3 diffuse) {
+  vec3 sum = vec3(0.0);
+  for (int l = 0; l < frame.counts.y; ++l) {
+    PunctualLightBlock light = frame.punctualLights[l];
+    vec3 wi = -light.directionRange.xyz;
+    float attenuation = 1.0;
+    if (light.positionType.w > 0.5) {
+      vec3 towards = light.positionType.xyz - s.position;
+      float distance2 = max(dot(towards, towards), 1.0e-12);
+      wi = towards * inversesqrt(distance2);
+      float relative = distance2 * light.directionRange.w * light.directionRange.w;
+      attenuation = clamp(1.0 - relative * relative, 0.0, 1.0) / distance2;
+      if (light.positionType.w > 1.5) {
+        float angular = clamp(dot(light.directionRange.xyz, -wi) * light.cone.x + light.cone.y, 0.0, 1.0);
+        attenuation *= angular * angular;
+      }
+    }
+    float cosineIn = dot(s.n, wi);
+    if (cosineIn <= 0.0 || attenuation <= 0.0 || dot(s.ng, wi) <= 0.0) continue;
+    float fresnel;
+    float f = reflectance(s, wi, s.alphaT, s.alphaB, fresnel);
+    vec3 brdf = diffuse * (kOneOverPi * (1.0 - fresnel)) + f * (s.f0 * (1.0 - fresnel) + fresnel);
+    sum += light.intensity.rgb * brdf * (cosineIn * attenuation * visibleFraction(ssdfAt(t, wi), kPunctualSharpness));
+  }
+  return sum;
+}
+
+vec3 shade(Surface s, Transfer t) {
+  float cosineOut = dot(s.n, s.wo);
+  vec3 albedo = albedoAt(anisotropic(s) ? sqrt(sqrt(s.alphaT * s.alphaB)) : s.roughness, cosineOut);
+  float rough = smoothstep(kRoughFrom, kRoughTo, sqrt(min(s.alphaT, s.alphaB)));
+  vec3 reflected = vec3(0.0);
+  if (rough < 1.0) reflected += (1.0 - rough) * smoothReflection(s, t, albedo);
+  if (rough > 0.0) reflected += rough * roughReflection(s, t, albedo);
+  vec3 radiance = reflected;
+  if (largestOf(s.diffuse) > 0.0) radiance += s.diffuse * (1.0 - albedo.z) * kOneOverPi * diffuseLight(s, t);
+  return radiance + punctualLight(s, t, s.diffuse);
+}
