@@ -76,77 +76,59 @@ FN Vec3 cosineWeightedAxis(IN(Vec3) axis, IN(Real) sharpness, IN(Vec3) n) {
   return moved * (Real(1.0) / sqrt(dot(moved, moved)));
 }
 
-// ---- anisotropic: an elongated Gaussian about the mirror direction, strung from round lobes -----------------------------------------
-
-struct ElongatedLobe {
-  Vec3 axis;
-  Vec3 along;         // unit, across axis: the long direction
-  Real deviationLong;   // radians
-  Real deviationShort;
-  Real amplitude;     // of D, 1/sr
-};
+// ---- anisotropic: each mixture term strung along its long direction in half vectors -------------------------------------------------
 
 // A tail term broader than this in half vectors is cut here, so that a flat distribution (alpha 1) still has lobes on the sphere.
 CONST Real kBroadestHalfLobe = Real(0.6);
 
-// Term (a, b) of ggxMixtureTerm for alphaX along unit tangent t and alphaY along unit bitangent b (both across n), warped to light
-// directions: with h = n + step, wi moves by 2 in the plane of incidence and 2 cos across it (Wang et al. 2009; ALGORITHMS 2.3).
-FN ElongatedLobe ggxWarpedTerm(IN(Vec2) term, IN(Vec3) n, IN(Vec3) t, IN(Vec3) b, IN(Real) alphaX, IN(Real) alphaY, IN(Vec3) x, IN(Vec3) wo) {
-  Real c = clampReal(dot(n, wo), kMinWarpCosine, Real(1.0));
-  Real qx = Real(2.0) * term.y * ggxCurvature(alphaX) + kBroadestHalfLobe;
-  Real qy = Real(2.0) * term.y * ggxCurvature(alphaY) + kBroadestHalfLobe;
-  // Covariance of the half vector, turned into the plane of incidence (x) and across it (y), then warped.
-  Real cosX = dot(x, t);
-  Real sinX = dot(x, b);
-  Real sxx = (cosX * cosX / qx + sinX * sinX / qy) * Real(4.0);
-  Real syy = (sinX * sinX / qx + cosX * cosX / qy) * Real(4.0) * c * c;
-  Real sxy = cosX * sinX * (Real(1.0) / qy - Real(1.0) / qx) * Real(4.0) * c;
-  // Eigenvectors of the symmetric 2x2 matrix.
-  Real middle = Real(0.5) * (sxx + syy);
-  Real difference = Real(0.5) * (sxx - syy);
-  Real radius = sqrt(difference * difference + sxy * sxy);
-  Real larger = middle + radius;
-  Real smaller = max(middle - radius, Real(1.0e-12));
-  Real ex = difference >= Real(0.0) ? radius + difference : sxy;
-  Real ey = difference >= Real(0.0) ? sxy : radius - difference;
-  Real scale = ex * ex + ey * ey;
-  if (scale > Real(1.0e-30)) {
-    ex = ex / sqrt(scale);
-    ey = ey / sqrt(scale);
-  } else {
-    ex = Real(1.0);
-    ey = Real(0.0);
-  }
-  // Frame across the mirror direction: in the plane of incidence, away from the viewer's side; and across it.
-  Real cosineOut = dot(n, wo);
-  Real sine = sqrt(max(Real(0.0), (Real(1.0) - cosineOut) * (Real(1.0) + cosineOut)));
-  ElongatedLobe lobe;
-  lobe.axis = n * cosineOut - x * sine;
-  lobe.along = (n * sine + x * cosineOut) * ex + cross(n, x) * ey;
-  lobe.deviationLong = sqrt(larger);
-  lobe.deviationShort = sqrt(smaller);
-  lobe.amplitude = term.x * kOneOverPi / (clampAlpha(alphaX) * clampAlpha(alphaY));
-  return lobe;
+// Lobes to string per term for this ratio of the larger to the smaller alpha: odd, 3 to 9 (ALGORITHMS 2.5: about twice the ratio).
+FN int anisotropicPartCount(IN(Real) ratio) {
+  if (ratio < Real(1.5)) return 3;
+  if (ratio < Real(2.5)) return 5;
+  return ratio < Real(3.5) ? 7 : 9;
 }
 
-// Round part `index` of `count` (3 or 5) of an elongated lobe: the in-plane string of ALGORITHMS 2.3, whose widths depend only on the
-// ratio of the two deviations. Weights hold D, V, the cosine and the integral; they still want the albedo's normalisation.
-FN SpecularLobe elongatedPart(IN(ElongatedLobe) lobe, IN(int) count, IN(int) index, IN(Vec3) n, IN(Vec3) t, IN(Vec3) b, IN(Real) alphaX,
-                              IN(Real) alphaY, IN(Vec3) wo) {
-  Real ratio = clampReal(lobe.deviationShort / lobe.deviationLong, kMinWarpCosine, Real(1.0));
-  int k = index - (count - 1) / 2;
-  int distance = k < 0 ? -k : k;
-  Real width = warpTable(ratio, count, 0) * lobe.deviationLong;
-  Real angle = clampReal(Real(k) * warpTable(ratio, count, 1) * lobe.deviationLong, -Real(1.2), Real(1.2));
+// Round lobe `index` of `count` for term (a, b) of ggxMixtureTerm; alphaX along unit t, alphaY along unit b, both across n.
+// The string is laid out in half vectors and each part mirrored by itself, because the light directions of a brushed surface lie on a cone
+// about the brushing, not on a great circle. Envelope and round lobe convolve to the term's long deviation; each part is then warped
+// isotropically (Wang et al. 2009). Weights hold D, V, the cosine and the integral; they still want the albedo's normalisation.
+FN SpecularLobe anisotropicPart(IN(Vec2) term, IN(int) count, IN(int) index, IN(Vec3) n, IN(Vec3) t, IN(Vec3) b, IN(Real) alphaX, IN(Real) alphaY,
+                                IN(Vec3) wo) {
+  bool alongT = alphaX >= alphaY;
+  Vec3 along = alongT ? t : b;
+  Real varianceLong = Real(1.0) / (Real(2.0) * term.y * ggxCurvature(alongT ? alphaX : alphaY) + kBroadestHalfLobe);
+  Real varianceShort = Real(1.0) / (Real(2.0) * term.y * ggxCurvature(alongT ? alphaY : alphaX) + kBroadestHalfLobe);
+  // The envelope ends where it is a tenth of its peak: sqrt(2 ln 10) deviations.
+  Real envelope = sqrt(max(varianceLong - varianceShort, Real(0.0)));
+  Real extent = min(Real(2.1459660) * envelope, Real(1.2));
+  Real spacing = Real(2.0) * extent / Real(count + 1);
+  Real deviation = max(sqrt(varianceShort), Real(0.6) * spacing);
+  Real share = Real(0.0);
+  Real sum = Real(0.0);
+  for (int i = 0; i < count; ++i) {
+    Real offset = envelope > Real(0.0) ? Real(i - (count - 1) / 2) * spacing / envelope : Real(0.0);
+    Real w = exp(-Real(0.5) * offset * offset);
+    sum += w;
+    if (i == index) share = w;
+  }
+  Real angle = Real(index - (count - 1) / 2) * spacing;
+  Vec3 halfAxis = n * cos(angle) + along * sin(angle);
+
   SpecularLobe part;
-  Vec3 axis = lobe.axis * cos(angle) + lobe.along * sin(angle);
-  part.sharpness = Real(1.0) / (width * width);
+  Real c = dot(wo, halfAxis);
+  Vec3 axis = warpAxis(wo, halfAxis);
+  part.sharpness = Real(1.0) / (deviation * deviation * Real(4.0) * clampReal(c, kMinWarpCosine, Real(1.0)));
   part.axis = cosineWeightedAxis(axis, part.sharpness, n);
+  part.weight = Real(0.0);
+  part.fresnelWeight = Real(0.0);
+  if (c <= Real(0.0)) return part;
+
   Vec3 wh = wo + part.axis;
   wh = wh * (Real(1.0) / sqrt(max(dot(wh, wh), Real(1.0e-12))));
   Vec3 localOut = Vec3(dot(wo, t), dot(wo, b), dot(wo, n));
   Vec3 localIn = Vec3(dot(part.axis, t), dot(part.axis, b), max(dot(part.axis, n), Real(0.0)));
-  Real amplitude = lobe.amplitude * warpTable(ratio, count, 2 + distance);
+  Real amplitude = term.x * kOneOverPi / (clampAlpha(alphaX) * clampAlpha(alphaY)) * sqrt(varianceLong * varianceShort) / (deviation * deviation)
+                 * share / sum;
   Real flux = amplitude * sgUnitIntegral(part.sharpness) * clampedCosineMean(dot(n, axis), part.sharpness)
             * ggxVisibilityAnisotropic(localOut, localIn, alphaX, alphaY);
   Real f = fresnelSchlickWeight(dot(wo, wh));

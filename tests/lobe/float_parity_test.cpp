@@ -17,7 +17,7 @@ TEST_P(FloatParity, MatchesDouble) {
   const Comparison result = compare(c, runDouble(c), runFloat(c), "float C++");
   std::fputs(result.report.c_str(), stdout);
   EXPECT_EQ(result.failures, 0u) << result.report;
-  EXPECT_LE(result.worst, kTolerance);
+  EXPECT_LE(result.worst, c.tolerance);
 }
 
 INSTANTIATE_TEST_SUITE_P(Lobe, FloatParity, testing::Range(std::size_t{0}, allCases().size()),

@@ -69,7 +69,7 @@ TEST_P(GlslParity, MatchesDouble) {
   const Comparison result = compare(c, runDouble(c), runGlsl(c, readShader), "GLSL");
   std::fputs(result.report.c_str(), stdout);
   EXPECT_EQ(result.failures, 0u) << result.report;
-  EXPECT_LE(result.worst, kTolerance);
+  EXPECT_LE(result.worst, c.tolerance);
   EXPECT_TRUE(testContext().debugLog().messages().empty());
 }
 

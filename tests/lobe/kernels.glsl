@@ -10,6 +10,8 @@
 #include "shaders/lobe/equirect.glsl"
 #include "shaders/lobe/sh.glsl"
 #include "shaders/lobe/ggx.glsl"
+#include "shaders/lobe/specular.glsl"
+#include "shaders/lobe/display.glsl"
 #endif
 
 struct KernelInput {
@@ -175,5 +177,52 @@ KERNEL(cosineLobes) {
       y[at + 1] = lobe.sharpness;
       at += 2;
     }
+  }
+}
+
+KERNEL(srgbEncode) { y[0] = srgbEncode(x.v[0]); }
+KERNEL(srgbDecode) { y[0] = srgbDecode(x.v[0]); }
+KERNEL(displayEncode) {
+  for (int map = 0; map < 3; ++map) {
+    Vec3 c = displayEncode(vectorAt(x, 0), x.v[3], map);
+    y[3 * map] = c.x;
+    y[3 * map + 1] = c.y;
+    y[3 * map + 2] = c.z;
+  }
+}
+KERNEL(specularTableCoordinate) {
+  Vec2 at = specularTableCoordinate(x.v[0], x.v[1]);
+  y[0] = at.x;
+  y[1] = at.y;
+}
+KERNEL(incidenceTangent) {
+  Vec3 t = incidenceTangent(vectorAt(x, 0), vectorAt(x, 3));
+  y[0] = t.x;
+  y[1] = t.y;
+  y[2] = t.z;
+}
+KERNEL(cosineWeightedAxis) {
+  Vec3 a = cosineWeightedAxis(vectorAt(x, 0), x.v[3], vectorAt(x, 4));
+  y[0] = a.x;
+  y[1] = a.y;
+  y[2] = a.z;
+}
+KERNEL(alphaUnderLight) { y[0] = alphaUnderLight(x.v[0], x.v[1]); }
+// Viewer (0..2) above the normal +z, alphas (3, 4): the lobes of a three-term, three-part anisotropic reflection.
+KERNEL(elongatedPart) {
+  Vec3 n = Vec3(Real(0.0), Real(0.0), Real(1.0));
+  Vec3 t = Vec3(Real(1.0), Real(0.0), Real(0.0));
+  Vec3 b = Vec3(Real(0.0), Real(1.0), Real(0.0));
+  Vec3 wo = vectorAt(x, 0);
+  Vec3 across = incidenceTangent(n, wo);
+  for (int i = 0; i < 3; ++i) {
+    ElongatedLobe lobe = ggxWarpedTerm(ggxMixtureTerm(3, i), n, t, b, x.v[3], x.v[4], across, wo);
+    SpecularLobe part = elongatedPart(lobe, 3, i, n, t, b, x.v[3], x.v[4], wo);
+    y[6 * i] = part.axis.x;
+    y[6 * i + 1] = part.axis.y;
+    y[6 * i + 2] = part.axis.z;
+    y[6 * i + 3] = part.sharpness;
+    y[6 * i + 4] = part.weight;
+    y[6 * i + 5] = part.fresnelWeight;
   }
 }

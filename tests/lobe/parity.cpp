@@ -110,7 +110,7 @@ Comparison compare(const Case& c, const std::vector<double>& expected, const std
       }
       if (!finite) continue;
       const double error = std::sqrt(error2) / std::max(std::sqrt(size2), floor);
-      if (!(error <= kTolerance)) ++result.failures;
+      if (!(error <= c.tolerance)) ++result.failures;
       if (!(error <= result.worst)) {
         result.worst = error;
         result.worstSample = s;
@@ -127,7 +127,7 @@ Comparison compare(const Case& c, const std::vector<double>& expected, const std
   char line[256];
   std::snprintf(line, sizeof line, "%-28s %-10s %8zu samples  median %.1e  99%% %.1e  worst %.2e  failures %zu (%zu NaN/inf)\n", c.name.c_str(),
                 label.c_str(), result.samples, result.median, result.percentile99, result.worst, result.failures, result.classFailures);
-  result.report = line;
+  result.report = line + ("    domain: " + c.domain) + "\n";
   if (!errors.empty()) result.report += describe(c, expected, got, result.worstSample, result.worstOutput);
   if (result.classFailures > 0) {
     for (int k = 0; k < c.outputCount; ++k) {

@@ -43,6 +43,7 @@ struct Case {
   std::vector<float> inputs;  ///< inputCount floats per sample
   Scale scale;
   std::string domain;         ///< in words, for the table
+  double tolerance = kTolerance;  ///< above kTolerance only where `domain` says why
 
   std::size_t sampleCount() const { return inputs.size() / static_cast<std::size_t>(inputCount); }
 };

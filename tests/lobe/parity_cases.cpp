@@ -313,6 +313,51 @@ void addGgx(Registry& r) {
   r.add(CHIARO_CASE(cosineLobes, 3, 20, scalars(20), "constants"), [](Generator& g, auto& out) { push(out, glm::vec3(0, 0, g.uniform(0.5, 1))); });
 }
 
+void addDisplay(Registry& r) {
+  const Fill unit = [](Generator& g, auto& out) { out.push_back(g.spoil(static_cast<float>(g.chance(0.5) ? g.uniform(-0.1, 1.1) : g.logUniform(1e-9, 1)))); };
+  r.add(CHIARO_CASE(srgbEncode, 1, 1, scalars(1), "[0, 1], clamped"), unit);
+  r.add(CHIARO_CASE(srgbDecode, 1, 1, scalars(1), "[0, 1], clamped"), unit);
+  r.add(CHIARO_CASE(displayEncode, 4, 9, scalars(9), "radiance 1e-6..1e4; error over max(value, .1): 1e-6 absolute, an 8-bit step is 4e-3", [](const float*) { return 0.1 / kFloor; }), [](Generator& g, auto& out) {
+    const double level = g.logUniform(1e-6, 1e4);
+    for (int i = 0; i < 3; ++i) out.push_back(static_cast<float>(g.chance(0.05) ? 0 : level * g.logUniform(0.1, 1)));
+    out.push_back(static_cast<float>(g.logUniform(0.1, 10)));
+  });
+}
+
+void addSpecular(Registry& r) {
+  r.add(CHIARO_CASE(specularTableCoordinate, 2, 2, scalars(2), "roughness, cosine in [0, 1]; error over max(value, .01): 1e-7 absolute, a texel is 1e-2", [](const float*) { return 0.01 / kFloor; }), [](Generator& g, auto& out) {
+    out.insert(out.end(), {g.spoil(static_cast<float>(g.uniform(0, 1))), g.spoil(static_cast<float>(g.uniform(0, 1)))});
+  });
+  r.add(CHIARO_CASE(incidenceTangent, 6, 3, {{0, 3}}, "unit n, wo above it"), [](Generator& g, auto& out) {
+    const glm::vec3 n(g.direction());
+    glm::vec3 wo = g.partner(n, 3.0);
+    if (glm::dot(n, wo) < 0) wo = -wo;
+    push(out, n);
+    push(out, wo);
+  });
+  r.add(CHIARO_CASE(cosineWeightedAxis, 7, 3, {{0, 3}}, "unit axis, n; sharpness .3..1e6"), [](Generator& g, auto& out) {
+    const glm::vec3 axis(g.direction());
+    push(out, axis);
+    out.push_back(static_cast<float>(g.logUniform(0.3, 1e6)));
+    push(out, g.partner(axis, 3.0));
+  });
+  r.add(CHIARO_CASE(alphaUnderLight, 2, 1, scalars(1), "alpha in [1e-4, 1], sharpness >= 0"), [](Generator& g, auto& out) {
+    out.insert(out.end(), {static_cast<float>(g.logUniform(1e-4, 1)), static_cast<float>(g.logUniform(1e-6, 1e6))});
+  });
+  // Not a primitive but a chain of a dozen steps, some ill-conditioned (the half vector of two nearly opposite directions, the tail of the
+  // cosine below the horizon), so it gets 5e-5: 5e-6 of the reflected light.
+  Case elongated = CHIARO_CASE(elongatedPart, 5, 18, {{0, 3}, {3, 1}, {4, 2}, {6, 3}, {9, 1}, {10, 2}, {12, 3}, {15, 1}, {16, 2}},
+                    "view cosine .1..1, alphas .02..1; weights over max(weight, .1); ill-conditioned chain: 5e-5", [](const float*) { return 0.1 / kFloor; });
+  elongated.tolerance = 5e-5;
+  r.add(std::move(elongated),
+        [](Generator& g, auto& out) {
+          glm::dvec3 wo = g.direction();
+          wo.z = std::abs(wo.z) + 0.12;
+          push(out, glm::vec3(glm::normalize(wo)));
+          for (int i = 0; i < 2; ++i) out.push_back(static_cast<float>(g.logUniform(0.02, 1)));
+        });
+}
+
 }  // namespace
 
 const std::vector<Case>& allCases() {
@@ -324,6 +369,8 @@ const std::vector<Case>& allCases() {
     addWarp(r);
     addMaps(r);
     addGgx(r);
+    addDisplay(r);
+    addSpecular(r);
     return std::move(r.cases);
   }();
   return cases;
