@@ -1,0 +1,48 @@
+#include "runtime/viewer/view_inputs.h"
+
+#include <algorithm>
+#include <cctype>
+#include <chrono>
+
+#include "assets/builtin/environment.h"
+
+namespace chiaro {
+
+double secondsNow() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+LoadedScene loadForView(const std::filesystem::path& path, const MaterialOverride& materials) {
+  const double start = secondsNow();
+  LoadedScene loaded;
+  loaded.path = path;
+  loaded.baked = readBakedScene(path);
+  nameDefaultMaterial(loaded.baked.scene);
+  overrideMaterials(loaded.baked.scene, materials);
+  std::error_code ignored;
+  loaded.fileBytes = std::filesystem::file_size(path, ignored);
+  loaded.seconds = secondsNow() - start;
+  return loaded;
+}
+
+PreparedEnvironment prepareForView(const std::string& nameOrPath, int threads) {
+  PreparedEnvironment prepared;
+  prepared.name = nameOrPath;
+  const double start = secondsNow();
+  const Environment environment = loadEnvironment(nameOrPath);
+  prepared.loadSeconds = secondsNow() - start;
+  SgEnvironmentSettings settings;
+  settings.threads = threads;
+  prepared.light = prepareEnvironment(environment, settings);
+  prepared.exposure = autoExposure(environment);
+  prepared.prepareSeconds = secondsNow() - start - prepared.loadSeconds;
+  return prepared;
+}
+
+DroppedKind droppedKind(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (extension == ".glb") return DroppedKind::scene;
+  if (extension == ".hdr" || extension == ".exr") return DroppedKind::environment;
+  return DroppedKind::other;
+}
+
+}  // namespace chiaro

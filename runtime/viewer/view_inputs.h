@@ -1,0 +1,42 @@
+#pragma once
+/// A scene and an environment on their way from file to renderer, with the seconds they took.
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include "assets/scene/material_override.h"
+#include "assets/transfer/transfer.h"
+#include "runtime/environment/sg_environment.h"
+
+namespace chiaro {
+
+struct LoadedScene {
+  std::filesystem::path path;
+  BakedScene baked;              ///< every primitive has a material of its own or of the file
+  std::uintmax_t fileBytes = 0;
+  double seconds = 0.0;
+};
+
+/// Reads and overrides. Throws Error (unreadableInput).
+LoadedScene loadForView(const std::filesystem::path& path, const MaterialOverride& materials);
+
+struct PreparedEnvironment {
+  std::string name;              ///< as the user gave it
+  SgEnvironment light;
+  float exposure = 1.0f;         ///< autoExposure()
+  double loadSeconds = 0.0;
+  double prepareSeconds = 0.0;
+};
+
+/// Loads and prefilters. Throws Error (unreadableInput).
+PreparedEnvironment prepareForView(const std::string& nameOrPath, int threads);
+
+enum class DroppedKind { scene, environment, other };
+/// What a file dropped on the window is taken for, by its extension (case ignored).
+DroppedKind droppedKind(const std::filesystem::path& path);
+
+/// Seconds since the steady clock's start.
+double secondsNow();
+
+}  // namespace chiaro

@@ -1,0 +1,183 @@
+#include "runtime/viewer/view_options.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+#include <numbers>
+
+#include "assets/builtin/environment.h"
+#include "assets/error.h"
+#include "assets/file.h"
+
+namespace chiaro {
+namespace {
+
+constexpr int kLargestSide = 16384;  // what every OpenGL 4.5 driver allows a texture
+
+std::string joined(const std::vector<std::string>& names) {
+  std::string text;
+  for (const auto& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
+std::string lowerExtension(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
+}
+
+std::optional<int> wholeNumber(std::string_view text) {
+  int value = 0;
+  const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (status != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+std::optional<float> parseExposure(const std::string& text) {
+  if (text == "auto") return std::nullopt;
+  float value = 0.0f;
+  const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (status != std::errc() || end != text.data() + text.size() || !(value > 0.0f) || !std::isfinite(value))
+    throw usageError("--exposure", "\"" + text + "\" is not a factor above 0", "give auto or a number such as 1.5");
+  return value;
+}
+
+ViewMode modeOf(const ViewOptionTexts& texts) {
+  if (texts.headless && texts.window) throw usageError("--window", "contradicts --headless", "give one of the two");
+  if (texts.headless) return ViewMode::headless;
+  return texts.window ? ViewMode::window : ViewMode::interactive;
+}
+
+void checkOutputs(const ViewOptions& options, const ViewOptionTexts& texts) {
+  const bool any = !texts.picture.empty() || !texts.timings.empty();
+  if (options.mode == ViewMode::interactive) {
+    const char* given = !texts.picture.empty() ? "--output" : !texts.timings.empty() ? "--json" : texts.framesGiven ? "--frames" : nullptr;
+    if (given != nullptr) throw usageError(given, "needs a run that ends", "add --headless, or --window for one in a window");
+    return;
+  }
+  if (!any) throw usageError("--output", "there is nothing to write", "give -o FILE, --json FILE or both");
+  if (options.environments.size() > 1)
+    throw usageError("--environment", "a picture has one environment, not " + std::to_string(options.environments.size()), "run once for each");
+  if (!options.picture.empty()) {
+    pictureFormat(options.picture, "--output");
+    requireWritable(options.picture);
+  }
+  if (!options.timings.empty()) requireWritable(options.timings);
+  if (!options.picture.empty() && options.picture == options.timings)
+    throw usageError("--json", "names the same file as --output", "give two names");
+}
+
+void checkEnvironment(const std::string& name) {
+  const auto& builtin = builtinEnvironmentNames();
+  if (std::find(builtin.begin(), builtin.end(), name) != builtin.end()) return;
+  std::error_code ignored;
+  if (std::filesystem::exists(name, ignored)) return;
+  throw inputError(name, "no such file, and no built-in environment of that name", "give a .hdr or .exr file, or one of " + joined(builtin));
+}
+
+}  // namespace
+
+void declareViewOptions(CLI::App& app, ViewOptions& options, ViewOptionTexts& texts) {
+  app.add_option("baked", texts.scene, "Baked scene (.glb) that chiaro-precompute wrote")->required()->type_name("FILE");
+  app.add_option("-e,--environment", options.environments,
+                 "Light: " + joined(builtinEnvironmentNames()) + ", or an .hdr or .exr file. May be repeated in a window. Default: sunny")
+      ->type_name("NAME|FILE")
+      ->allow_extra_args(false);
+  app.add_option("--rotate-environment-deg", options.rotateEnvironmentDegrees, "Turn the environment about +Y")->type_name("A");
+
+  const std::string view = "View";
+  app.add_option("--size", texts.size, "Picture or window size in pixels")->type_name("WxH")->capture_default_str()->group(view);
+  app.add_option("--camera", texts.camera,
+                 "auto (the file's first camera, else one that frames the scene), an index or name of a camera in the file, or "
+                 "eye=X,Y,Z,target=X,Y,Z,fov-deg=D")
+      ->type_name("SPEC")->capture_default_str()->group(view);
+  app.add_option("--orbit", texts.orbit, "Then carry the camera around what it looks at, in degrees")
+      ->type_name("AZIMUTH,ELEVATION")->capture_default_str()->group(view);
+  app.add_option("--exposure", texts.exposure, "Factor on radiance, or auto to suit the environment")
+      ->type_name("auto|FACTOR")->capture_default_str()->group(view);
+  app.add_option("--tone-map", texts.toneMap, "neutral, aces or clamp")->type_name("NAME")->capture_default_str()->group(view);
+  app.add_option("--supersample", options.supersample, "N x N shaded points a pixel, 1 to 8")
+      ->type_name("N")->capture_default_str()->group(view);
+  app.add_flag("--no-background", texts.noBackground, "Leave what no object covers black")->group(view);
+  app.add_flag("--no-shadows", texts.noShadows, "Ignore the baked transfer")->group(view);
+  app.add_option("--debug-view", texts.debugView, "Show " + joined(debugViewNames()) + " instead of the picture")
+      ->type_name("NAME")->capture_default_str()->group(view);
+  app.add_option("--roughness", texts.roughness, "Perceptual roughness of every material, 0 to 1")->type_name("R")->group(view);
+  app.add_option("--metallic", texts.metallic, "Metalness of every material, 0 to 1")->type_name("M")->group(view);
+
+  const std::string files = "Runs that end";
+  app.add_flag("--headless", texts.headless, "Draw without a window")->group(files);
+  app.add_flag("--window", texts.window, "Draw in a window that closes when done")->group(files);
+  app.add_option("-o,--output", texts.picture, "Picture: .png as the screen shows it, .exr linear radiance with coverage in alpha")
+      ->type_name("FILE")->group(files);
+  app.add_option("--json", texts.timings, "Sizes and seconds, and the GPU milliseconds of each pass")->type_name("FILE")->group(files);
+  app.add_option("--frames", options.frames, "Frames to time; above 1, after one that is not counted")
+      ->type_name("N")->capture_default_str()->group(files);
+  app.add_option("--threads", options.threads, "CPU threads that prepare the environment; 0 is all")
+      ->type_name("N")->capture_default_str();
+  app.add_flag("-q,--quiet", options.quiet, "Print nothing but errors");
+}
+
+void finishViewOptions(ViewOptions& options, const ViewOptionTexts& texts) {
+  options.scene = texts.scene;
+  options.picture = texts.picture;
+  options.timings = texts.timings;
+  options.mode = modeOf(texts);
+  options.size = parseSize(texts.size);
+  options.camera = parseCameraSpec(texts.camera);
+  options.orbit = parseOrbit(texts.orbit);
+  options.exposure = parseExposure(texts.exposure);
+  options.toneMap = toneMapFromName(texts.toneMap);
+  options.debugView = debugViewFromName(texts.debugView);
+  options.shadows = !texts.noShadows;
+  options.background = !texts.noBackground;
+  options.materials = {texts.roughness, texts.metallic};
+  for (const auto& [value, option] : {std::pair{texts.roughness, "--roughness"}, std::pair{texts.metallic, "--metallic"}})
+    if (value && !(*value >= 0.0f && *value <= 1.0f)) throw usageError(option, "must lie between 0 and 1", "give a number such as 0.4");
+  if (options.supersample < 1 || options.supersample > 8) throw usageError("--supersample", "must lie between 1 and 8", "give a number such as 2");
+  if (options.frames < 1 || options.frames > 1'000'000) throw usageError("--frames", "must lie between 1 and 1000000", "give a number such as 20");
+  if (options.threads < 0) throw usageError("--threads", "must not be negative", "give 0 for all cores");
+  if (!std::isfinite(options.rotateEnvironmentDegrees)) throw usageError("--rotate-environment-deg", "is not a number", "give degrees such as 90");
+  if (options.environments.empty()) options.environments = {"sunny"};
+
+  checkOutputs(options, texts);
+  for (const auto& name : options.environments) checkEnvironment(name);
+}
+
+glm::ivec2 parseSize(const std::string& text) {
+  const auto cross = text.find('x');
+  const auto width = wholeNumber(std::string_view(text).substr(0, cross));
+  const auto height = cross == std::string::npos ? std::nullopt : wholeNumber(std::string_view(text).substr(cross + 1));
+  if (!width || !height) throw usageError("--size", "\"" + text + "\" is not a size", "give WIDTHxHEIGHT such as 1280x720");
+  if (*width < 1 || *height < 1 || *width > kLargestSide || *height > kLargestSide)
+    throw usageError("--size", "\"" + text + "\" is out of range", "each side must lie between 1 and " + std::to_string(kLargestSide));
+  return {*width, *height};
+}
+
+const std::vector<std::string>& debugViewNames() {
+  static const std::vector<std::string> kNames{"none", "albedo", "normal", "roughness", "visibility", "ssdf"};
+  return kNames;
+}
+
+DebugView debugViewFromName(const std::string& name) {
+  const auto& names = debugViewNames();
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found == names.end()) throw usageError("--debug-view", "unknown view \"" + name + "\"", "give one of " + joined(names));
+  return static_cast<DebugView>(found - names.begin());
+}
+
+PictureFormat pictureFormat(const std::filesystem::path& path, const std::string& option) {
+  const std::string extension = lowerExtension(path);
+  if (extension == ".png") return PictureFormat::png;
+  if (extension == ".exr") return PictureFormat::exr;
+  throw usageError(option, "\"" + path.string() + "\" is neither a .png nor an .exr name", "end the name in .png or .exr");
+}
+
+glm::mat3 environmentRotation(double degrees) {
+  const double radians = std::remainder(degrees, 360.0) * (std::numbers::pi / 180.0);
+  return glm::mat3(glm::rotate(glm::mat4(1.0f), static_cast<float>(radians), glm::vec3(0, 1, 0)));
+}
+
+}  // namespace chiaro
