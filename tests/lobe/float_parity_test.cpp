@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
+#include <limits>
 
 #include "tests/lobe/parity.h"
 
@@ -22,6 +25,41 @@ TEST_P(FloatParity, MatchesDouble) {
 
 INSTANTIATE_TEST_SUITE_P(Lobe, FloatParity, testing::Range(std::size_t{0}, allCases().size()),
                          [](const auto& index) { return allCases()[index.param].name; });
+
+// Where float is weakest: the worst relative error by decade of sharpness, of the stable forms and of the textbook ones that they replace.
+// The textbook columns show that the inputs are hard enough to tell: they must be bad where ours are good.
+TEST(Stability, TableBySharpness) {
+  std::printf("%-10s %12s %12s %12s %12s\n", "sharpness", "evaluate", "textbook", "inner prod.", "textbook");
+  double worstTextbook = 0;
+  for (double low = 1e-6; low < 0.99e6; low *= 10) {
+    double evaluate = 0, evaluateTextbook = 0, inner = 0, innerTextbook = 0;
+    for (int i = 0; i < 20000; ++i) {
+      // A deterministic scatter: golden-ratio steps in sharpness, angle and azimuth.
+      const double u = std::fmod(i * 0.618033988749895, 1.0), v = std::fmod(i * 0.754877666246693, 1.0), w = std::fmod(i * 0.569840290998053, 1.0);
+      const auto l = static_cast<float>(low * std::pow(10.0, u));
+      const double angle = 2 * std::asin(std::min(1.0, std::sqrt(8 * v / l))), phi = 6.283 * w;
+      const glm::vec3 a(0.48f, 0.6f, 0.64f);
+      const glm::dvec3 x = glm::normalize(glm::cross(glm::dvec3(a), glm::dvec3(1, 0, 0))), y = glm::cross(glm::dvec3(a), x);
+      const glm::vec3 b(std::cos(angle) * glm::dvec3(a) + std::sin(angle) * (std::cos(phi) * x + std::sin(phi) * y));
+      const auto error = [](double got, double expected) { return std::abs(got - expected) / std::max(std::abs(expected), kFloor); };
+      const auto raise = [](double& worst, double e) { worst = e <= worst ? worst : e; };
+
+      const double value = lobe64::sgEvaluate(lobe64::sphericalGaussian(a, l, 1), b);
+      raise(evaluate, error(lobe32::sgEvaluate(lobe32::sphericalGaussian(a, l, 1), b), value));
+      raise(evaluateTextbook, error(std::exp(l * (glm::dot(a, b) - 1.0f)), value));
+
+      const double product = lobe64::sgInnerProduct(lobe64::sphericalGaussian(a, l, 1), lobe64::sphericalGaussian(b, l, 1));
+      raise(inner, error(lobe32::sgInnerProduct(lobe32::sphericalGaussian(a, l, 1), lobe32::sphericalGaussian(b, l, 1)), product));
+      const float d = glm::length(l * a + l * b);
+      raise(innerTextbook, error(6.28318531f * std::exp(d - 2 * l) * (1.0f - std::exp(-2 * d)) / d, product));
+    }
+    std::printf("%-10.0e %12.2e %12.2e %12.2e %12.2e\n", low, evaluate, evaluateTextbook, inner, innerTextbook);
+    EXPECT_LE(evaluate, kTolerance);
+    EXPECT_LE(inner, kTolerance);
+    worstTextbook = std::max(worstTextbook, std::min(evaluateTextbook, innerTextbook));
+  }
+  EXPECT_GT(worstTextbook, 1e-3);
+}
 
 // The comparison itself: NaN, a wrong sign of infinity and 0.1 % must all be seen.
 TEST(Compare, SeesWhatIsWrong) {

@@ -208,16 +208,30 @@ KERNEL(cosineWeightedAxis) {
   y[2] = a.z;
 }
 KERNEL(alphaUnderLight) { y[0] = alphaUnderLight(x.v[0], x.v[1]); }
-// Viewer (0..2) above the normal +z, alphas (3, 4): the lobes of a three-term, three-part anisotropic reflection.
-KERNEL(elongatedPart) {
+// Table entry (0..3), alpha (4), cosine to the viewer (5), in the frame n = z, x = x.
+KERNEL(specularTableLobe) {
+  SpecularLobe lobe = specularTableLobe(Vec4(x.v[0], x.v[1], x.v[2], x.v[3]), Vec3(Real(0.0), Real(0.0), Real(1.0)),
+                                        Vec3(Real(1.0), Real(0.0), Real(0.0)), x.v[5], x.v[4]);
+  y[0] = lobe.axis.x;
+  y[1] = lobe.axis.y;
+  y[2] = lobe.axis.z;
+  y[3] = lobe.sharpness;
+  y[4] = lobe.weight;
+  y[5] = lobe.fresnelWeight;
+}
+KERNEL(shadingNormalTowards) {
+  Vec3 n = shadingNormalTowards(vectorAt(x, 0), vectorAt(x, 3));
+  y[0] = n.x;
+  y[1] = n.y;
+  y[2] = n.z;
+}
+// Viewer (0..2) above the normal +z, alphas (3, 4): one part of each term of a three-term anisotropic reflection.
+KERNEL(anisotropicPart) {
   Vec3 n = Vec3(Real(0.0), Real(0.0), Real(1.0));
   Vec3 t = Vec3(Real(1.0), Real(0.0), Real(0.0));
   Vec3 b = Vec3(Real(0.0), Real(1.0), Real(0.0));
-  Vec3 wo = vectorAt(x, 0);
-  Vec3 across = incidenceTangent(n, wo);
   for (int i = 0; i < 3; ++i) {
-    ElongatedLobe lobe = ggxWarpedTerm(ggxMixtureTerm(3, i), n, t, b, x.v[3], x.v[4], across, wo);
-    SpecularLobe part = elongatedPart(lobe, 3, i, n, t, b, x.v[3], x.v[4], wo);
+    SpecularLobe part = anisotropicPart(ggxMixtureTerm(3, i), 5, 2 * i, n, t, b, x.v[3], x.v[4], vectorAt(x, 0));
     y[6 * i] = part.axis.x;
     y[6 * i + 1] = part.axis.y;
     y[6 * i + 2] = part.axis.z;

@@ -344,18 +344,29 @@ void addSpecular(Registry& r) {
   r.add(CHIARO_CASE(alphaUnderLight, 2, 1, scalars(1), "alpha in [1e-4, 1], sharpness >= 0"), [](Generator& g, auto& out) {
     out.insert(out.end(), {static_cast<float>(g.logUniform(1e-4, 1)), static_cast<float>(g.logUniform(1e-6, 1e6))});
   });
-  // Not a primitive but a chain of a dozen steps, some ill-conditioned (the half vector of two nearly opposite directions, the tail of the
-  // cosine below the horizon), so it gets 5e-5: 5e-6 of the reflected light.
-  Case elongated = CHIARO_CASE(elongatedPart, 5, 18, {{0, 3}, {3, 1}, {4, 2}, {6, 3}, {9, 1}, {10, 2}, {12, 3}, {15, 1}, {16, 2}},
-                    "view cosine .1..1, alphas .02..1; weights over max(weight, .1); ill-conditioned chain: 5e-5", [](const float*) { return 0.1 / kFloor; });
-  elongated.tolerance = 5e-5;
-  r.add(std::move(elongated),
+  r.add(CHIARO_CASE(specularTableLobe, 6, 6, {{0, 3}, {3, 1}, {4, 1}, {5, 1}}, "entries of the fitted table, alpha .01..1, cosine .001..1"),
         [](Generator& g, auto& out) {
-          glm::dvec3 wo = g.direction();
-          wo.z = std::abs(wo.z) + 0.12;
-          push(out, glm::vec3(glm::normalize(wo)));
-          for (int i = 0; i < 2; ++i) out.push_back(static_cast<float>(g.logUniform(0.02, 1)));
+          for (const auto& [low, high] : {std::pair{-2.0, 2.0}, {-3.0, 3.0}, {0.0, 1.0}, {0.0, 1.0}}) out.push_back(static_cast<float>(g.uniform(low, high)));
+          out.push_back(static_cast<float>(g.logUniform(0.01, 1)));
+          out.push_back(static_cast<float>(g.logUniform(1e-3, 1)));
         });
+  r.add(CHIARO_CASE(shadingNormalTowards, 6, 3, {{0, 3}}, "unit n, wo at most 135 degrees apart"), [](Generator& g, auto& out) {
+    const glm::dvec3 n = g.direction();
+    push(out, glm::vec3(n));
+    push(out, glm::vec3(g.tilted(n, g.uniform(0, 2.356))));
+  });
+  // Not a primitive but a chain of a dozen steps, some ill-conditioned (the half vector of two nearly opposite directions, the tail of the
+  // cosine below the horizon, the difference of two nearly equal variances), so it is held to 5e-5.
+  Case anisotropic = CHIARO_CASE(anisotropicPart, 5, 18, {{0, 3}, {3, 1}, {4, 2}, {6, 3}, {9, 1}, {10, 2}, {12, 3}, {15, 1}, {16, 2}},
+                                 "view cosine .1..1, alphas .02..1; weights over max(weight, .1); ill-conditioned chain: 5e-5",
+                                 [](const float*) { return 0.1 / kFloor; });
+  anisotropic.tolerance = 5e-5;
+  r.add(std::move(anisotropic), [](Generator& g, auto& out) {
+    glm::dvec3 wo = g.direction();
+    wo.z = std::abs(wo.z) + 0.12;
+    push(out, glm::vec3(glm::normalize(wo)));
+    for (int i = 0; i < 2; ++i) out.push_back(static_cast<float>(g.logUniform(0.02, 1)));
+  });
 }
 
 }  // namespace
