@@ -95,21 +95,18 @@ struct FittedLobe {
 };
 
 std::array<FittedLobe, kLobes> fitSlice(double alpha, double cosineOut) {
-  const Vec3 n(0, 0, 1), wo = viewDirection(cosineOut), x(1, 0, 0), y(0, 1, 0);
+  const Vec3 n(0, 0, 1), wo = viewDirection(cosineOut);
   std::array<FittedLobe, kLobes> lobes{};
   std::array<Vec3, kLobes> axes;
   const double mirrorAngle = std::acos(std::clamp(cosineOut, -1.0, 1.0));
   for (int term = 0; term < kTerms; ++term) {
-    const auto elongated =
-        lobe64::ggxWarpedTerm(lobe64::ggxMixtureTerm(kTerms, term), n, x, y, alpha, alpha, x, wo);
-    // The string always follows the plane of incidence, so that it moves smoothly through normal incidence.
-    auto inPlane = elongated;
-    inPlane.along = n * wo.x + x * wo.z;
+    const double halfSharpness = 2.0 * lobe64::ggxMixtureTerm(kTerms, term).y * lobe64::ggxCurvature(alpha) + lobe64::kBroadestHalfLobe;
+    const auto halfLobe = lobe64::sphericalGaussian(n, halfSharpness, 1.0);
     for (int part = 0; part < kStrung; ++part) {
-      const auto lobe = lobe64::elongatedPart(inPlane, kStrung, part, n, x, y, alpha, alpha, wo);
+      const auto lobe = lobe64::sgWarpLobe(halfLobe, wo, kStrung, part);
       const auto k = static_cast<std::size_t>(term * kStrung + part);
-      axes[k] = lobe.axis;
-      lobes[k].angle = mirrorAngle - std::atan2(-lobe.axis.x, lobe.axis.z);
+      axes[k] = lobe64::cosineWeightedAxis(lobe.axis, lobe.sharpness, n);
+      lobes[k].angle = mirrorAngle - std::atan2(-axes[k].x, axes[k].z);
       lobes[k].sharpness = lobe.sharpness;
     }
   }

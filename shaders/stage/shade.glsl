@@ -16,8 +16,7 @@ layout(binding = 9) uniform sampler2DArray specularTable;  // runtime/brdf/specu
 layout(binding = 10) uniform sampler2D albedoTable;
 
 const int kTableLobes = 20;
-const int kAnisotropicTerms = 4;
-const int kAnisotropicParts = 5;
+const int kAnisotropicTerms = 3;
 // Perceptual roughness from which the reflection passes from SG lobes to the BRDF at fixed lobes.
 const float kRoughFrom = 0.45;
 const float kRoughTo = 0.6;
@@ -210,10 +209,10 @@ vec3 smoothReflection(Surface s, Transfer t, vec3 albedo) {
     return s.f0 * base + edge;
   }
   float baseWeight = 0.0, edgeWeight = 0.0;
+  int parts = anisotropicPartCount(max(s.alphaT / s.alphaB, s.alphaB / s.alphaT));
   for (int j = 0; j < kAnisotropicTerms; ++j) {
-    ElongatedLobe elongated = ggxWarpedTerm(ggxMixtureTerm(kAnisotropicTerms, j), s.n, s.t, s.b, s.alphaT, s.alphaB, x, s.wo);
-    for (int k = 0; k < kAnisotropicParts; ++k) {
-      SpecularLobe lobe = elongatedPart(elongated, kAnisotropicParts, k, s.n, s.t, s.b, s.alphaT, s.alphaB, s.wo);
+    for (int k = 0; k < parts; ++k) {
+      SpecularLobe lobe = anisotropicPart(ggxMixtureTerm(kAnisotropicTerms, j), parts, k, s.n, s.t, s.b, s.alphaT, s.alphaB, s.wo);
       if (!(lobe.weight + lobe.fresnelWeight > 1.0e-4)) continue;
       vec3 radiance = lobeRadiance(s, t, lobe.axis, lobe.sharpness, broad);
       base += radiance * lobe.weight;
@@ -254,7 +253,8 @@ vec3 punctualLight(Surface s, Transfer t, vec3 diffuse) {
 
 vec3 shade(Surface s, Transfer t) {
   float cosineOut = dot(s.n, s.wo);
-  vec3 albedo = albedoAt(anisotropic(s) ? sqrt(sqrt(s.alphaT * s.alphaB)) : s.roughness, cosineOut);
+  // Of an anisotropic surface the mean of both directions' (within .03 for strength up to .6).
+  vec3 albedo = 0.5 * (albedoAt(sqrt(s.alphaT), cosineOut) + albedoAt(sqrt(s.alphaB), cosineOut));
   float rough = smoothstep(kRoughFrom, kRoughTo, sqrt(min(s.alphaT, s.alphaB)));
   vec3 reflected = vec3(0.0);
   if (rough < 1.0) reflected += (1.0 - rough) * smoothReflection(s, t, albedo);
