@@ -84,8 +84,8 @@ class FloorMesh {
   static constexpr int kRings = 42;
   static constexpr int kHoleColumns = 12;              ///< the block of cells around a pillar
   static constexpr int kHoleRings = 12;
-  static constexpr int kFirstHoleRing = 21;
-  static constexpr int kLayers = 5;                    ///< from the block's edge to the pillar's foot
+  static constexpr int kFirstHoleRing = 23;
+  static constexpr int kLayers = 3;                    ///< from the block's edge to the pillar's foot
   static constexpr std::uint32_t kUnused = std::numeric_limits<std::uint32_t>::max();
   static_assert(2 * (kHoleColumns + kHoleRings) == kPillarColumns);
 

@@ -21,14 +21,14 @@ double stretched(const Brdf& brdf, glm::dvec3 w) { return std::hypot(brdf.alphaX
 
 double pow5(double x) { return x * x * x * x * x; }
 
-glm::dvec3 fresnel(glm::dvec3 f0, double cosine) { return f0 + (1.0 - f0) * pow5(1.0 - std::clamp(cosine, 0.0, 1.0)); }
+glm::dvec3 fresnel(const Brdf& brdf, double cosine) { return brdf.f0 + (brdf.f90 - brdf.f0) * pow5(1.0 - std::clamp(cosine, 0.0, 1.0)); }
 
 }  // namespace
 
 glm::dvec3 brdfTimesCosine(const Brdf& brdf, glm::dvec3 wo, glm::dvec3 wi) {
   if (!(wi.z > 0.0 && wo.z > 0.0)) return glm::dvec3(0.0);
   const glm::dvec3 wh = glm::normalize(wo + wi);
-  const glm::dvec3 f = fresnel(brdf.f0, glm::dot(wo, wh));
+  const glm::dvec3 f = fresnel(brdf, glm::dot(wo, wh));
   // G / (4 wi.z wo.z) with G = 1 / (1 + Lambda(wo) + Lambda(wi))
   const double visibility = 0.5 / (wi.z * stretched(brdf, wo) + wo.z * stretched(brdf, wi));
   return (f * (distribution(brdf, wh) * visibility) + (1.0 - f) * brdf.diffuse / kPi) * wi.z;
@@ -67,11 +67,12 @@ double reflectionDensity(const Brdf& brdf, glm::dvec3 wo, glm::dvec3 wi) {
 }
 
 double reflectionShare(const Brdf& brdf, glm::dvec3 wo) {
-  const glm::dvec3 f = fresnel(brdf.f0, wo.z);
+  const glm::dvec3 f = fresnel(brdf, wo.z);
   const double reflected = f.x + f.y + f.z;
   const glm::dvec3 scattered = (1.0 - f) * brdf.diffuse;
   const double total = reflected + scattered.x + scattered.y + scattered.z;
   if (!(total > reflected)) return 1.0;
+  if (!(reflected > 0.0)) return 0.0;
   // Never all of one kind: at grazing angles or in the lobe's tail the other one is the better sampler.
   return std::clamp(reflected / total, 0.25, 0.9);
 }
