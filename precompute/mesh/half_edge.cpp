@@ -21,11 +21,13 @@ bool fits(const Mesh& mesh, const std::array<Mesh::VertexHandle, 3>& corner) {
 }
 
 struct EdgeUse {
-  std::uint32_t forward = 0;   ///< triangles that run from the lower to the higher vertex
+  std::uint32_t forward = 0;  ///< triangles that run from the lower to the higher vertex
   std::uint32_t backward = 0;
+  int halfedge[2] = {-1, -1};  ///< the last of each
 };
 
-void countEdges(const std::vector<std::uint32_t>& indices, const std::vector<std::uint32_t>& welded, HalfEdges& result) {
+/// Counts the edges between welded positions, and finds the pairs of half-edges that belong together though the mesh has them apart.
+void matchEdges(const std::vector<std::uint32_t>& indices, const std::vector<std::uint32_t>& welded, HalfEdges& result) {
   std::unordered_map<std::uint64_t, EdgeUse> edges;
   edges.reserve(indices.size());
   for (std::size_t t = 0; t < indices.size(); t += 3) {
@@ -33,6 +35,7 @@ void countEdges(const std::vector<std::uint32_t>& indices, const std::vector<std
       const std::uint64_t a = welded[indices[t + i]], b = welded[indices[t + (i + 1) % 3]];
       auto& use = edges[a < b ? (a << 32 | b) : (b << 32 | a)];
       ++(a < b ? use.forward : use.backward);
+      use.halfedge[a < b ? 0 : 1] = result.halfedge(t / 3, static_cast<int>(i)).idx();
     }
   }
   for (const auto& [key, use] : edges) {
@@ -40,6 +43,10 @@ void countEdges(const std::vector<std::uint32_t>& indices, const std::vector<std
       ++result.nonManifoldEdges;
     else if (use.forward + use.backward == 1)
       ++result.boundaryEdges;
+    else if (result.mesh.opposite_halfedge_handle(Mesh::HalfedgeHandle(use.halfedge[0])).idx() != use.halfedge[1]) {
+      result.torn[use.halfedge[0]] = use.halfedge[1];
+      result.torn[use.halfedge[1]] = use.halfedge[0];
+    }
   }
 }
 
@@ -55,6 +62,13 @@ int HalfEdges::cornerOf(Mesh::HalfedgeHandle h) const {
   const auto first = firstHalfedge[static_cast<std::size_t>(mesh.face_handle(h).idx())];
   if (h == first) return 0;
   return h == mesh.next_halfedge_handle(first) ? 1 : 2;
+}
+
+Mesh::HalfedgeHandle HalfEdges::across(Mesh::HalfedgeHandle h) const {
+  const auto opposite = mesh.opposite_halfedge_handle(h);
+  if (!mesh.is_boundary(opposite)) return opposite;
+  const auto it = torn.find(h.idx());
+  return it == torn.end() ? Mesh::HalfedgeHandle() : Mesh::HalfedgeHandle(it->second);
 }
 
 HalfEdges buildHalfEdges(const std::vector<glm::vec3>& positions, const std::vector<std::uint32_t>& indices,
@@ -86,7 +100,7 @@ HalfEdges buildHalfEdges(const std::vector<glm::vec3>& positions, const std::vec
   }
   if (wasEnabled) omerr().enable();
 
-  countEdges(indices, welded, result);
+  matchEdges(indices, welded, result);
   return result;
 }
 

@@ -4,6 +4,7 @@
 #include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <unordered_map>
 #include <vector>
 
 namespace chiaro {
@@ -21,7 +22,12 @@ struct HalfEdges {
   /// Corner (0..2) of the face that half-edge `h` leaves from.
   int cornerOf(HalfEdgeMesh::HalfedgeHandle h) const;
 
+  /// The half-edge of the triangle across half-edge `h` of a triangle: also where splitting tore apart an edge that just two triangles
+  /// share with the same winding. Invalid on boundaries and non-manifold edges.
+  HalfEdgeMesh::HalfedgeHandle across(HalfEdgeMesh::HalfedgeHandle h) const;
+
   std::vector<HalfEdgeMesh::HalfedgeHandle> firstHalfedge;  ///< from corner 0 of each triangle
+  std::unordered_map<int, int> torn;                        ///< half-edge to half-edge, both ways
 };
 
 /// `positions` and `indices` describe the triangles; vertices count as one where `welded` (weldPositions()) says so.

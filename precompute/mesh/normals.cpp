@@ -74,9 +74,10 @@ void computeNormals(Primitive& primitive, const HalfEdges& edges, float creaseAn
 
   UnionFind groups(primitive.indices.size());
   const double leastCosine = std::cos(static_cast<double>(creaseAngle));
-  for (const auto e : mesh.edges()) {
-    const auto h = mesh.halfedge_handle(e, 0), o = mesh.halfedge_handle(e, 1);
-    if (mesh.is_boundary(h) || mesh.is_boundary(o)) continue;
+  for (const auto h : mesh.halfedges()) {
+    if (mesh.is_boundary(h)) continue;
+    const auto o = edges.across(h);
+    if (!o.is_valid() || o.idx() < h.idx()) continue;
     const auto f = static_cast<std::size_t>(mesh.face_handle(h).idx()), g = static_cast<std::size_t>(mesh.face_handle(o).idx());
     if (!(glm::dot(faceNormal[f], faceNormal[g]) >= leastCosine)) continue;
     groups.join(cornerIndex(edges, h), cornerIndex(edges, mesh.next_halfedge_handle(o)));

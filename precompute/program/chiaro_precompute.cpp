@@ -121,6 +121,17 @@ void printSummary(const Options& options, const BakeRun& run, const BakeReport& 
   }
 }
 
+/// bake() knows no file names; the user knows nothing else.
+template <typename Work>
+auto naming(const std::string& file, const Work& work) {
+  try {
+    return work();
+  } catch (const Error& error) {
+    if (error.where() != "scene") throw;
+    throw Error(error.code(), file, std::string(error.what()).substr(error.where().size() + 2), "");
+  }
+}
+
 ExitCode precompute(int argc, char** argv) {
   CLI::App app("Bakes the radiance transfer of a scene: what each vertex sees, compressed, in one .glb.", "chiaro-precompute");
   app.footer(kExamples);
@@ -151,9 +162,11 @@ ExitCode precompute(int argc, char** argv) {
 
   bar.setItems(scene.vertexCount(), "vertices");
   BakeReport report;
-  const auto baked = bake(scene, options.settings, report, [&](const std::string& stage, double done) {
-    throwIfInterrupted();
-    bar.update(stage, done);
+  const auto baked = naming(options.scene, [&] {
+    return bake(scene, options.settings, report, [&](const std::string& stage, double done) {
+      throwIfInterrupted();
+      bar.update(stage, done);
+    });
   });
   bar.clear();
 

@@ -29,17 +29,6 @@ std::size_t nearestTraced(const OctahedralGrid& grid, const TexelBits& above, gl
   return best;
 }
 
-void mirrorBelow(const OctahedralGrid& grid, glm::vec3 n, const TexelBits& above, TexelBits& visible) {
-  for (std::size_t tile = 0; tile < grid.tileCount; ++tile) {
-    for (unsigned below = static_cast<std::uint16_t>(~above[tile]); below != 0; below &= below - 1) {
-      const auto lane = static_cast<std::size_t>(std::countr_zero(below));
-      const auto w = grid.direction(16 * tile + lane);
-      const auto source = nearestTraced(grid, above, w - 2.0f * glm::dot(w, n) * n);
-      if (texelBit(visible.data(), source)) visible[tile] = static_cast<std::uint16_t>(visible[tile] | 1u << lane);
-    }
-  }
-}
-
 }  // namespace
 
 CHIARO_CLONES
@@ -52,6 +41,18 @@ void texelsAbove(const OctahedralGrid& grid, glm::vec3 normal, AlignedFloats& co
     unsigned bits = 0;
     for (int lane = 0; lane < 16; ++lane) bits |= static_cast<unsigned>(c[lane] > 0.0f) << lane;
     above[tile] = static_cast<std::uint16_t>(bits);
+  }
+}
+
+void mirrorBelowHorizon(const OctahedralGrid& grid, glm::vec3 n, const TexelBits& above, TexelBits& visible) {
+  for (std::size_t tile = 0; tile < grid.tileCount; ++tile) {
+    for (unsigned below = static_cast<std::uint16_t>(~above[tile]); below != 0; below &= below - 1) {
+      const auto lane = static_cast<std::size_t>(std::countr_zero(below));
+      const auto w = grid.direction(16 * tile + lane);
+      const auto source = nearestTraced(grid, above, w - 2.0f * glm::dot(w, n) * n);
+      const unsigned bit = 1u << lane;
+      visible[tile] = static_cast<std::uint16_t>(texelBit(visible.data(), source) ? visible[tile] | bit : visible[tile] & ~bit);
+    }
   }
 }
 
@@ -70,7 +71,7 @@ std::uint64_t traceVisibility(const RayScene& rays, const OctahedralGrid& grid, 
     if (viewpoint.doubleSided) seen |= trace(viewpoint.back, static_cast<std::uint16_t>(~above[tile]));
     visible[tile] = static_cast<std::uint16_t>(seen);
   }
-  if (!viewpoint.doubleSided) mirrorBelow(grid, viewpoint.normal, above, visible);
+  if (!viewpoint.doubleSided) mirrorBelowHorizon(grid, viewpoint.normal, above, visible);
   return traced;
 }
 

@@ -24,4 +24,7 @@ void texelsAbove(const OctahedralGrid& grid, glm::vec3 normal, AlignedFloats& co
 std::uint64_t traceVisibility(const RayScene& rays, const OctahedralGrid& grid, const Viewpoint& viewpoint, const TexelBits& above,
                               TexelBits& visible);
 
+/// For every texel not in `above`: the bit of the texel of `above` that holds (or, next to the horizon, is nearest to) its mirror image.
+void mirrorBelowHorizon(const OctahedralGrid& grid, glm::vec3 normal, const TexelBits& above, TexelBits& visible);
+
 }  // namespace chiaro

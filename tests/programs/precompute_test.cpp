@@ -1,0 +1,239 @@
+// chiaro-precompute as its users meet it: options, messages, exit codes, files.
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <thread>
+
+#include "assets/error.h"
+#include "assets/file.h"
+#include "assets/transfer/transfer.h"
+#include "tests/programs/view_support.h"
+
+namespace chiaro {
+namespace {
+
+const std::vector<std::string> kFast{"--resolution", "16", "--terms", "8", "--directions", "8"};
+
+/// A table on a floor, as an OBJ without normals: about 300 vertices.
+std::string writeTable() {
+  std::ofstream file("table.obj");
+  int count = 0;
+  const auto grid = [&](double x0, double y, double z0, double size, int cells) {
+    for (int j = 0; j <= cells; ++j)
+      for (int i = 0; i <= cells; ++i) file << "v " << x0 + size * i / cells << " " << y << " " << z0 - size * j / cells << "\n";
+    for (int j = 0; j < cells; ++j)
+      for (int i = 0; i < cells; ++i) {
+        const int a = count + 1 + j * (cells + 1) + i;
+        file << "f " << a << " " << a + 1 << " " << a + cells + 2 << " " << a + cells + 1 << "\n";
+      }
+    count += (cells + 1) * (cells + 1);
+  };
+  grid(-2, 0, 2, 4, 12);
+  grid(-0.6, 0.8, 0.6, 1.2, 8);
+  return "table.obj";
+}
+
+Finished precompute(std::vector<std::string> arguments) { return runProgram("chiaro-precompute", arguments); }
+
+Finished bakeTable(const std::string& output, std::vector<std::string> more = {}) {
+  std::vector<std::string> arguments{writeTable(), "-o", output};
+  arguments.insert(arguments.end(), kFast.begin(), kFast.end());
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return precompute(arguments);
+}
+
+void expectOneLine(const Finished& finished, ExitCode code, const std::string& about) {
+  EXPECT_EQ(finished.code, static_cast<int>(code)) << finished.err;
+  EXPECT_EQ(finished.errorLines(), 1) << finished.err;
+  EXPECT_EQ(finished.err.rfind("chiaro-precompute: ", 0), 0u) << finished.err;
+  EXPECT_NE(finished.err.find(about), std::string::npos) << finished.err;
+  EXPECT_TRUE(finished.out.empty()) << finished.out;
+}
+
+TEST(Precompute, HelpAndVersionGoToStandardOutput) {
+  const auto help = precompute({"--help"});
+  EXPECT_EQ(help.code, 0);
+  EXPECT_TRUE(help.err.empty()) << help.err;
+  for (const char* word : {"--output", "--resolution", "--terms", "--directions", "--crease-angle-deg", "--seed", "--threads", "--json", "--quiet",
+                           "--verbose", "Examples:", "Exit codes:", "builtin:"})
+    EXPECT_NE(help.out.find(word), std::string::npos) << word;
+  const auto version = precompute({"--version"});
+  EXPECT_EQ(version.code, 0);
+  EXPECT_EQ(version.out.rfind("chiaro-precompute ", 0), 0u);
+}
+
+TEST(Precompute, WrongUsageIsOneLineAndTwo) {
+  expectOneLine(precompute({}), ExitCode::usage, "scene");
+  expectOneLine(precompute({"builtin:sphere"}), ExitCode::usage, "--output");
+  const std::vector<std::pair<std::vector<std::string>, std::string>> cases{
+      {{"--resolution", "15"}, "--resolution"}, {{"--resolution", "512"}, "--resolution"}, {{"--resolution", "18"}, "multiple of 4"},
+      {{"--resolution", "many"}, "--resolution"}, {{"--terms", "0"}, "--terms"},          {{"--terms", "257"}, "--terms"},
+      {{"--directions", "9"}, "--directions"},  {{"--directions", "4"}, "--directions"},   {{"--crease-angle-deg", "nan"}, "--crease-angle-deg"},
+      {{"--crease-angle-deg", "-1"}, "--crease-angle-deg"}, {{"--threads", "-2"}, "--threads"}, {{"--frobnicate"}, "--frobnicate"},
+      {{"--quiet", "--verbose"}, "verbose"},    {{"--json", "out.glb"}, "--json"}};
+  for (const auto& [options, about] : cases) {
+    std::vector<std::string> arguments{"builtin:sphere", "-o", "out.glb"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    expectOneLine(precompute(arguments), ExitCode::usage, about);
+  }
+  expectOneLine(precompute({"builtin:sphere", "-o", "out.ply"}), ExitCode::usage, ".glb");
+  expectOneLine(precompute({"builtin:nonesuch", "-o", "out.glb"}), ExitCode::usage, "nonesuch");
+  EXPECT_FALSE(std::filesystem::exists("out.glb"));
+}
+
+TEST(Precompute, UnreadableInputIsOneLineAndThree) {
+  expectOneLine(precompute({"missing.ply", "-o", "out.glb", "-q"}), ExitCode::unreadableInput, "missing.ply");
+  std::ofstream("rubbish.glb") << "this is not a scene";
+  expectOneLine(precompute({"rubbish.glb", "-o", "out.glb", "-q"}), ExitCode::unreadableInput, "rubbish.glb");
+  std::ofstream("flat.obj") << "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n";
+  expectOneLine(precompute({"flat.obj", "-o", "out.glb", "-q"}), ExitCode::unreadableInput, "flat.obj");
+  EXPECT_FALSE(std::filesystem::exists("out.glb"));
+}
+
+TEST(Precompute, UnwritableOutputIsFoundBeforeTheWork) {
+  expectOneLine(precompute({"missing.ply", "-o", "no/such/folder/out.glb"}), ExitCode::unwritableOutput, "no/such/folder");
+  std::filesystem::create_directory("folder.glb");
+  expectOneLine(precompute({"missing.ply", "-o", "folder.glb"}), ExitCode::unwritableOutput, "folder.glb");
+  expectOneLine(precompute({"missing.ply", "-o", "out.glb", "--json", "no/such/folder/out.json"}), ExitCode::unwritableOutput, "out.json");
+}
+
+TEST(Precompute, WritesASceneAndItsFigures) {
+  const auto finished = bakeTable("table.glb", {"--json", "table.json"});
+  ASSERT_EQ(finished.code, 0) << finished.err;
+  EXPECT_EQ(std::count(finished.out.begin(), finished.out.end(), '\n'), 1) << "one line says what was made";
+  EXPECT_NE(finished.err.find("visibility: 100 %"), std::string::npos) << "plain lines where there is no terminal: " << finished.err;
+  EXPECT_EQ(finished.err.find('\r'), std::string::npos);
+
+  const auto baked = readBakedScene("table.glb");
+  std::ifstream file("table.json");
+  const auto json = nlohmann::json::parse(file);
+  EXPECT_EQ(json.at("vertices"), baked.scene.vertexCount());
+  EXPECT_EQ(json.at("triangles"), 2 * (12 * 12 + 8 * 8));
+  EXPECT_EQ(json.at("resolution"), 16);
+  EXPECT_EQ(json.at("terms"), baked.transfer.terms);
+  EXPECT_EQ(json.at("rays_traced"), baked.scene.vertexCount() * 128) << "half of 16 x 16: every normal is up";
+  EXPECT_GT(json.at("bytes_per_vertex").get<double>(), 0.0);
+  EXPECT_GT(json.at("peak_memory_bytes").get<double>(), 1e6);
+  for (const char* key : {"visibility", "ssdf", "compression", "total"}) EXPECT_GT(json.at("seconds").at(key).get<double>(), 0.0) << key;
+  for (const char* key : {"ssdf_rms_radians", "ssdf_sign_share", "visible_fraction_mean_abs_1000"})
+    EXPECT_GE(json.at("error").at(key).get<double>(), 0.0) << key;
+  EXPECT_EQ(json.at("repairs").at("normals_computed"), baked.scene.vertexCount());
+  EXPECT_EQ(json.at("repairs").at("boundary_edges"), 4 * 12 + 4 * 8);
+  EXPECT_EQ(json.at("settings").at("directions"), 8);
+  EXPECT_EQ(json.at("input"), "table.obj");
+  EXPECT_EQ(json.at("output"), "table.glb");
+  EXPECT_TRUE(json.contains("version"));
+}
+
+TEST(Precompute, QuietIsQuietAndVerboseSaysEverything) {
+  const auto quiet = bakeTable("quiet.glb", {"-q"});
+  EXPECT_EQ(quiet.code, 0);
+  EXPECT_TRUE(quiet.out.empty() && quiet.err.empty()) << quiet.out << quiet.err;
+  const auto verbose = bakeTable("verbose.glb", {"-v"});
+  for (const char* word : {"ssdf_rms_radians", "normals computed", "peak memory"}) EXPECT_NE(verbose.out.find(word), std::string::npos) << word;
+}
+
+TEST(Precompute, ThreadsDoNotChangeTheFileSeedsDo) {
+  ASSERT_EQ(bakeTable("one.glb", {"-q", "--threads", "1"}).code, 0);
+  ASSERT_EQ(bakeTable("five.glb", {"-q", "--threads", "5"}).code, 0);
+  ASSERT_EQ(bakeTable("seed.glb", {"-q", "--seed", "7"}).code, 0);
+  EXPECT_TRUE(readFile("one.glb") == readFile("five.glb"));
+  EXPECT_FALSE(readFile("one.glb") == readFile("seed.glb"));
+}
+
+TEST(Precompute, BakesItsOwnOutputAgain) {
+  ASSERT_EQ(bakeTable("first.glb", {"-q"}).code, 0);
+  auto again = std::vector<std::string>{"first.glb", "-o", "first.glb", "-q"};
+  again.insert(again.end(), kFast.begin(), kFast.end());
+  const auto before = readBakedScene("first.glb");
+  const auto finished = precompute(again);
+  EXPECT_EQ(finished.code, 0) << finished.err;
+  const auto after = readBakedScene("first.glb");
+  EXPECT_EQ(before.scene.primitives[0].positions, after.scene.primitives[0].positions);
+  EXPECT_EQ(before.transfer.primitives[0].visibility, after.transfer.primitives[0].visibility);
+}
+
+/// Starts a bake of the table that takes some tenths of a second.
+pid_t startBake(const std::string& output) {
+  const std::string program = std::string(std::getenv("CHIARO_BIN_DIR")) + "/chiaro-precompute";
+  const pid_t child = ::fork();
+  if (child == 0) {
+    ::execl(program.c_str(), program.c_str(), "table.obj", "-o", output.c_str(), "-q", "--resolution", "32", "--terms", "16", nullptr);
+    ::_exit(127);
+  }
+  return child;
+}
+
+int waitFor(pid_t child) {
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+/// Files in this folder that begin with `prefix` and are not `prefix` itself: temporaries left behind.
+int leftovers(const std::string& prefix) {
+  int count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(".")) {
+    const auto name = entry.path().filename().string();
+    count += name.rfind(prefix, 0) == 0 && name != prefix;
+  }
+  return count;
+}
+
+TEST(Precompute, AnInterruptLeavesNothingAndSays130) {
+  writeTable();
+  for (const int signal : {SIGINT, SIGTERM}) {
+    // A bake that cannot be over before the signal comes.
+    const std::string program = std::string(std::getenv("CHIARO_BIN_DIR")) + "/chiaro-precompute";
+    const pid_t child = ::fork();
+    if (child == 0) {
+      ::execl(program.c_str(), program.c_str(), "table.obj", "-o", "stopped.glb", "-q", "--resolution", "256", "--terms", "256", "--threads", "1", nullptr);
+      ::_exit(127);
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    ASSERT_EQ(::kill(child, signal), 0);
+    EXPECT_EQ(waitFor(child), 130);
+    EXPECT_FALSE(std::filesystem::exists("stopped.glb"));
+    EXPECT_EQ(leftovers("stopped.glb"), 0);
+  }
+}
+
+TEST(Precompute, KilledAtAnyMomentTheOutputIsOldOrNew) {
+  writeTable();
+  const auto start = std::chrono::steady_clock::now();
+  ASSERT_EQ(waitFor(startBake("killed.glb")), 0);
+  const auto whole = std::chrono::steady_clock::now() - start;
+  const auto complete = readFile("killed.glb");
+
+  // The old file is another bake, so that old and new cannot be taken for one another.
+  ASSERT_EQ(bakeTable("old.glb", {"-q"}).code, 0);
+  const auto old = readFile("old.glb");
+  std::mt19937 random(20);
+  int kills = 0;
+  for (int round = 0; round < 20; ++round) {
+    std::filesystem::copy_file("old.glb", "killed.glb", std::filesystem::copy_options::overwrite_existing);
+    const pid_t child = startBake("killed.glb");
+    // Half of the moments fall into the end, where the file is written.
+    const double uniform = static_cast<double>(random()) * 0x1p-32;
+    const double share = round % 2 == 0 ? uniform : 0.9 + 0.2 * uniform;
+    std::this_thread::sleep_for(std::chrono::duration_cast<std::chrono::microseconds>(whole * share));
+    ::kill(child, SIGKILL);
+    kills += waitFor(child) == 128 + SIGKILL;
+    const auto bytes = readFile("killed.glb");
+    EXPECT_TRUE(bytes == old || bytes == complete) << "round " << round << ", " << bytes.size() << " bytes";
+    EXPECT_NO_THROW(readBakedScene("killed.glb")) << "round " << round;
+  }
+  EXPECT_GE(kills, 5) << "most bakes were over before the kill: this tested nothing";
+}
+
+}  // namespace
+}  // namespace chiaro
