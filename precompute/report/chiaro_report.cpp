@@ -1,0 +1,107 @@
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <cstdio>
+#include <iostream>
+
+#include "assets/file.h"
+#include "assets/program/interrupt.h"
+#include "assets/program/program.h"
+#include "assets/program/progress_bar.h"
+#include "precompute/report/comparison.h"
+#include "precompute/report/error_map.h"
+#include "precompute/report/report_options.h"
+#include "precompute/report/report_page.h"
+#include "precompute/report/report_tables.h"
+
+namespace {
+
+using namespace chiaro;
+
+constexpr const char* kExamples = R"(Examples:
+  chiaro-report baked.glb -o report
+      under sunny, overcast and windows; open report/index.html
+  chiaro-report baked.glb -o report -e sky.hdr -r 0.2 -r 0.4 -r 0.7 --samples 512
+  chiaro-report baked.glb -o report --fail-under 30
+      exit code 5 when a picture is further than that from the truth
+
+Exit codes: 0 done, 1 failed, 2 wrong usage, 3 unreadable input, 4 unwritable output, 5 under --fail-under, 130 interrupted.)";
+
+std::vector<CasePictures> writePictures(const Comparisons& comparisons, const std::filesystem::path& folder) {
+  std::vector<CasePictures> all;
+  for (const Comparison& one : comparisons.cases) {
+    CasePictures pictures;
+    pictures.runtime = encodePng(displayImage(one.runtime, one.display.exposure, one.display.toneMap));
+    pictures.reference = encodePng(displayImage(one.reference, one.display.exposure, one.display.toneMap));
+    pictures.error = encodePng(errorMap(one.runtime, one.reference, one.display));
+    writeFileAtomically(folder / (one.name + "_runtime.png"), pictures.runtime);
+    writeFileAtomically(folder / (one.name + "_reference.png"), pictures.reference);
+    writeFileAtomically(folder / (one.name + "_error.png"), pictures.error);
+    all.push_back(std::move(pictures));
+  }
+  return all;
+}
+
+void printSummary(const Comparisons& comparisons, const std::filesystem::path& page) {
+  for (const Comparison& one : comparisons.cases)
+    std::printf("%-28s %6.2f dB (%.2f without the reference's noise)   rmse %.4f   bias %+.4f   noise %.4f\n", one.name.c_str(),
+                one.difference.psnr, psnrOf(one.difference.rmseWithoutNoise), one.difference.rmse, one.difference.bias, one.difference.noise);
+  std::printf("wrote %s\n", page.c_str());
+}
+
+/// Throws when a picture is not good enough. The report is on disk by then.
+void judge(const Comparisons& comparisons, const ReportOptions& options) {
+  for (const Comparison& one : comparisons.cases)
+    if (one.difference.undefinedPixels > 0)
+      throw Error(options.failUnder ? ExitCode::overTolerance : ExitCode::failed, one.name,
+                  std::to_string(one.difference.undefinedPixels) + " pixels are not finite", "look at its error map, they are magenta");
+  if (!options.failUnder) return;
+  for (const Comparison& one : comparisons.cases)
+    if (!(one.difference.psnr >= *options.failUnder)) {
+      char what[96];
+      std::snprintf(what, sizeof what, "%.2f dB is under the limit of %.2f dB", one.difference.psnr, *options.failUnder);
+      throw Error(ExitCode::overTolerance, one.name, what, "look at its error map");
+    }
+}
+
+ExitCode report(int argc, char** argv) {
+  CLI::App app("Compares what the runtime draws with brute-force ray tracing, picture by picture.", "chiaro-report");
+  app.footer(kExamples);
+  app.set_version_flag("--version", "chiaro-report " CHIARO_VERSION);
+  ReportOptions options;
+  ReportOptionTexts texts;
+  declareReportOptions(app, options, texts);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& asked) {  // --help, --version
+    app.exit(asked, std::cout, std::cerr);
+    return ExitCode::done;
+  } catch (const CLI::ParseError& error) {
+    throw usageError("command line", error.what(), "see chiaro-report --help");
+  }
+  finishReportOptions(options, texts);
+  catchInterrupts();
+
+  const BakedScene baked = readBakedScene(options.scene);
+  ProgressBar bar(progressStyle(options.quiet));
+  const Comparisons comparisons = compareAll(baked, options, [&](const std::string& stage, double done) {
+    throwIfInterrupted();
+    bar.update(stage, done);
+  });
+  bar.clear();
+
+  ReportFacts facts = factsOf(baked, options);
+  facts.version = CHIARO_VERSION;
+  const std::vector<CasePictures> pictures = writePictures(comparisons, options.output);
+  writeFileAtomically(options.output / "report.json", reportJson(facts, options, comparisons));
+  writeFileAtomically(options.output / "report.csv", reportCsv(comparisons));
+  writeFileAtomically(options.output / "index.html", reportPage(facts, options, comparisons, pictures));
+  if (!options.quiet) printSummary(comparisons, options.output / "index.html");
+  judge(comparisons, options);
+  return ExitCode::done;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return chiaro::runMain("chiaro-report", [&] { return report(argc, argv); });
+}

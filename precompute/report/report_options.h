@@ -1,0 +1,52 @@
+#pragma once
+/// What chiaro-report was asked to do.
+
+#include <filesystem>
+#include <glm/glm.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "assets/image/display.h"
+#include "assets/scene/camera_spec.h"
+
+namespace CLI {
+class App;
+}
+
+namespace chiaro {
+
+struct ReportOptions {
+  std::filesystem::path scene;            ///< a baked .glb
+  std::filesystem::path output;           ///< a folder, made where missing
+  std::vector<std::string> environments;  ///< names or files; never empty after finishReportOptions()
+  std::vector<float> roughnesses;         ///< perceptual, of every material; empty: the scene's own
+  std::optional<float> metallic;          ///< of every material, with or without `roughnesses`
+  glm::ivec2 size{480, 300};              ///< pixels
+  CameraSpec camera;
+  int samples = 128;                      ///< of the reference, light and BRDF sample pairs a pixel
+  std::optional<float> exposure;          ///< absent: autoExposure() of each environment
+  ToneMap toneMap = ToneMap::neutral;
+  bool shadows = true;
+  std::optional<double> failUnder;        ///< dB
+  int threads = 0;
+  bool quiet = false;
+};
+
+/// The option values as text, before finishReportOptions() turns them into the above.
+struct ReportOptionTexts {
+  std::string scene, output;
+  std::string size = "480x300";
+  std::string camera = "auto";
+  std::string exposure = "auto";
+  std::string toneMap = "neutral";
+  bool noShadows = false;
+};
+
+/// Declares every option on `app`; the two structures must outlive its parse().
+void declareReportOptions(CLI::App& app, ReportOptions& options, ReportOptionTexts& texts);
+
+/// Checks and converts what parse() left, and makes the output folder. Throws Error (usage, unwritableOutput).
+void finishReportOptions(ReportOptions& options, const ReportOptionTexts& texts);
+
+}  // namespace chiaro

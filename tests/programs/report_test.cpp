@@ -1,0 +1,159 @@
+// chiaro-report as its user meets it.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "assets/error.h"
+#include "assets/file.h"
+#include "assets/image/image.h"
+#include "runtime/gl/context.h"
+#include "tests/programs/view_support.h"
+
+namespace chiaro {
+namespace {
+
+using testing::HasSubstr;
+using testing::StartsWith;
+
+const std::string kScene = "report_scene.glb";
+
+Finished report(const std::vector<std::string>& arguments) { return runProgram("chiaro-report", arguments); }
+
+std::string textOf(const std::filesystem::path& path) {
+  const auto bytes = readFile(path);
+  return {bytes.begin(), bytes.end()};
+}
+
+void expectFailure(const Finished& run, int code, const std::string& part) {
+  EXPECT_EQ(run.code, code) << run.err;
+  EXPECT_EQ(run.errorLines(), 1) << run.err;
+  EXPECT_THAT(run.err, StartsWith("chiaro-report: "));
+  EXPECT_THAT(run.err, HasSubstr(part));
+}
+
+class ReportFiles : public testing::Test {
+ protected:
+  static void SetUpTestSuite() { bakeSmallScene(kScene); }
+};
+
+class ReportPictures : public ReportFiles {
+ protected:
+  void SetUp() override {
+    try {
+      gl::HeadlessContext context;
+    } catch (const Error& error) {
+      GTEST_SKIP() << "no OpenGL 4.5 on this machine: " << error.what();
+    }
+  }
+  static std::vector<std::string> small(const std::string& folder, const std::vector<std::string>& more = {}) {
+    std::vector<std::string> arguments{kScene, "-o", folder, "--size", "64x48", "--samples", "16", "-e", "white"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
+  }
+};
+
+TEST_F(ReportFiles, UsageErrors) {
+  const std::vector<std::pair<std::vector<std::string>, std::string>> cases{
+      {{}, "baked"},
+      {{kScene}, "--output"},
+      {{kScene, "-o", "r", "--size", "64"}, "--size"},
+      {{kScene, "-o", "r", "--size", "64x0"}, "--size"},
+      {{kScene, "-o", "r", "--size", "64x99999"}, "--size"},
+      {{kScene, "-o", "r", "-r", "1.5"}, "--roughness"},
+      {{kScene, "-o", "r", "-r", "nan"}, "--roughness"},
+      {{kScene, "-o", "r", "--metallic", "-1"}, "--metallic"},
+      {{kScene, "-o", "r", "--samples", "1"}, "--samples"},
+      {{kScene, "-o", "r", "--exposure", "0"}, "--exposure"},
+      {{kScene, "-o", "r", "--tone-map", "film"}, "tone map"},
+      {{kScene, "-o", "r", "--fail-under", "nan"}, "--fail-under"},
+      {{kScene, "-o", "r", "--threads", "-1"}, "--threads"},
+      {{kScene, "-o", "r", "--camera", "eye=1"}, "--camera"},
+      {{kScene, "-o", "r", "--no-such-option"}, "--no-such-option"},
+  };
+  for (const auto& [arguments, part] : cases) {
+    SCOPED_TRACE(testing::PrintToString(arguments));
+    expectFailure(report(arguments), 2, part);
+  }
+}
+
+TEST_F(ReportFiles, UnreadableAndUnwritable) {
+  expectFailure(report({"missing.glb", "-o", "r", "-q"}), 3, "missing.glb");
+  writeFileAtomically("not_a_scene.glb", std::string_view("glTF nonsense"));
+  expectFailure(report({"not_a_scene.glb", "-o", "r", "-q"}), 3, "not_a_scene.glb");
+  writeFileAtomically("a_file", std::string_view("x"));
+  expectFailure(report({kScene, "-o", "a_file/report", "-q"}), 4, "a_file");
+}
+
+TEST_F(ReportPictures, WritesEverythingItSays) {
+  const Finished run = report(small("full", {"-r", "0.4", "-r", "0.8", "-e", "overcast", "--metallic", "0"}));
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("full/index.html"));
+  const auto json = nlohmann::json::parse(textOf("full/report.json"));
+  ASSERT_EQ(json["cases"].size(), 4u);
+  EXPECT_EQ(json["size"], nlohmann::json::parse("[64, 48]"));
+  double lowest = 1e9;
+  for (const auto& one : json["cases"]) {
+    SCOPED_TRACE(one["name"]);
+    EXPECT_GT(one["object_pixels"], 500);
+    EXPECT_EQ(one["undefined_pixels"], 0);
+    // One pixel in fifty at most: the two decide differently about centres that an edge crosses.
+    EXPECT_LE(one["coverage_mismatches"], 64 * 48 / 50);
+    const double rmse = one["rmse"], psnr = one["psnr_db"], noise = one["reference_noise_rms"];
+    EXPECT_NEAR(psnr, -20 * std::log10(rmse), 1e-6);
+    // The same scene, light, camera and exposure: what remains is a coarse bake and 16 samples of noise.
+    EXPECT_GE(psnr, 20.0);
+    EXPECT_GT(noise, 0.0);
+    EXPECT_LE(one["rmse_without_noise"], 0.1);
+    lowest = std::min(lowest, psnr);
+    for (const auto& [kind, file] : one["pictures"].items()) {
+      const Image8 image = readPng("full/" + file.get<std::string>());
+      EXPECT_EQ(image.width, 64) << kind;
+      EXPECT_EQ(image.height, 48) << kind;
+    }
+  }
+  EXPECT_EQ(json["lowest_psnr_db"].get<double>(), lowest);
+  const std::string csv = textOf("full/report.csv");
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 5);
+  const std::string page = textOf("full/index.html");
+  std::size_t pictures = 0;
+  for (std::size_t at = page.find("data:image/png"); at != std::string::npos; at = page.find("data:image/png", at + 1)) ++pictures;
+  EXPECT_EQ(pictures, 12u);
+}
+
+TEST_F(ReportPictures, SameFiguresForAnyThreadCount) {
+  ASSERT_EQ(report(small("one", {"--threads", "1", "-q"})).code, 0);
+  ASSERT_EQ(report(small("three", {"--threads", "3", "-q"})).code, 0);
+  EXPECT_EQ(readFile("one/white_reference.png"), readFile("three/white_reference.png"));
+  EXPECT_EQ(readFile("one/white_runtime.png"), readFile("three/white_runtime.png"));
+}
+
+TEST_F(ReportPictures, LimitDecidesTheExitCode) {
+  const Finished strict = report(small("strict", {"--fail-under", "140", "-q"}));
+  expectFailure(strict, 5, "under the limit");
+  EXPECT_TRUE(std::filesystem::exists("strict/index.html"));  // to look at what failed
+  EXPECT_EQ(report(small("lenient", {"--fail-under", "5", "-q"})).code, 0);
+}
+
+TEST_F(ReportPictures, QuietIsQuiet) {
+  const Finished run = report(small("quiet", {"-q"}));
+  EXPECT_EQ(run.code, 0);
+  EXPECT_EQ(run.out + run.err, "");
+}
+
+TEST_F(ReportPictures, CameraThatSeesNothingSaysSo) {
+  expectFailure(report(small("nothing", {"-q", "--camera", "eye=0,50,0,target=0,100,0"})), 1, "no pixel shows the scene");
+}
+
+TEST_F(ReportPictures, TwoFilesOfOneNameKeepApart) {
+  const Finished run = report(small("twins", {"-q", "-e", "white"}));
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_TRUE(std::filesystem::exists("twins/white_runtime.png"));
+  EXPECT_TRUE(std::filesystem::exists("twins/white_2_runtime.png"));
+}
+
+}  // namespace
+}  // namespace chiaro
