@@ -30,11 +30,14 @@ Scene sphere() {
   builtin::Patch patch;
   patch.columns = 192;
   patch.rows = 96;
-  builtin::addPatch(primitive, patch, [](double u, double v) {
-    const double polar = std::numbers::pi * v;
-    const double azimuth = 2.0 * std::numbers::pi * u;
-    return glm::dvec3(std::sin(polar) * std::cos(azimuth), std::cos(polar), -std::sin(polar) * std::sin(azimuth));
-  }, -1.0);
+  builtin::addPatch(
+      primitive, patch,
+      [](double u, double v) {
+        const double polar = std::numbers::pi * v;
+        const double azimuth = 2.0 * std::numbers::pi * u;
+        return glm::dvec3(std::sin(polar) * std::cos(azimuth), std::cos(polar), -std::sin(polar) * std::sin(azimuth));
+      },
+      -1.0);
   builtin::dropUnusedVertices(primitive);
   scene.primitives.push_back(std::move(primitive));
   Camera camera = lookAt({0.0f, 0.6f, 4.2f}, {0.0f, 0.0f, 0.0f}, 0.56f, boundsOf(scene));

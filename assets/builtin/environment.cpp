@@ -130,16 +130,18 @@ constexpr glm::dvec3 kRoomLow(-4.0, -1.4, -5.0);
 constexpr glm::dvec3 kRoomHigh(4.0, 2.0, 5.0);
 
 /// Other two axes of a wall: (z, y) of an x wall, (x, z) of floor and ceiling, (x, y) of a z wall.
-glm::dvec2 onWall(int axis, glm::dvec3 p) { return axis == 0 ? glm::dvec2(p.z, p.y) : axis == 1 ? glm::dvec2(p.x, p.z) : glm::dvec2(p.x, p.y); }
+glm::dvec2 onWall(int axis, glm::dvec3 p) {
+  return axis == 0 ? glm::dvec2(p.z, p.y) : axis == 1 ? glm::dvec2(p.x, p.z) : glm::dvec2(p.x, p.y);
+}
 
 ImageRgb windows() {
   static const std::array<Window, 6> kWindows{{
-      {0, -1.0, {1.9, 0.55}, {0.80, 0.75}, {11.0, 12.5, 15.0}},   // a wide one in the left wall: cool daylight
-      {0, -1.0, {-1.6, 0.55}, {0.40, 0.75}, {9.0, 10.5, 13.0}},   // its narrow neighbour
-      {0, 1.0, {1.4, 0.35}, {0.22, 0.30}, {52.0, 30.0, 12.0}},    // small and warm on the right
-      {2, -1.0, {1.7, 0.75}, {0.10, 0.70}, {30.0, 34.0, 40.0}},   // a slit straight ahead
-      {2, 1.0, {1.1, 0.9}, {0.30, 0.22}, {34.0, 26.0, 18.0}},     // high up behind the viewer
-      {1, 1.0, {-0.9, -1.2}, {0.16, 0.16}, {70.0, 68.0, 62.0}},   // a skylight
+      {0, -1.0, {1.9, 0.55}, {0.80, 0.75}, {11.0, 12.5, 15.0}},  // a wide one in the left wall: cool daylight
+      {0, -1.0, {-1.6, 0.55}, {0.40, 0.75}, {9.0, 10.5, 13.0}},  // its narrow neighbour
+      {0, 1.0, {1.4, 0.35}, {0.22, 0.30}, {52.0, 30.0, 12.0}},   // small and warm on the right
+      {2, -1.0, {1.7, 0.75}, {0.10, 0.70}, {30.0, 34.0, 40.0}},  // a slit straight ahead
+      {2, 1.0, {1.1, 0.9}, {0.30, 0.22}, {34.0, 26.0, 18.0}},    // high up behind the viewer
+      {1, 1.0, {-0.9, -1.2}, {0.16, 0.16}, {70.0, 68.0, 62.0}},  // a skylight
   }};
   return paint([](glm::dvec3 w) -> Look {
     // The wall that the direction leaves the room through, and where.
@@ -164,7 +166,8 @@ ImageRgb windows() {
     // Walls lit by the windows: each as a small lamp, its light falling with the square of the distance and the cosine at the wall.
     glm::dvec3 normal(0.0);
     normal[axis] = -sign;
-    const glm::dvec3 albedo = axis == 1 ? (sign > 0.0 ? glm::dvec3(0.6) : glm::dvec3(0.30, 0.22, 0.16)) : glm::dvec3(0.46, 0.42, 0.38);
+    const glm::dvec3 albedo =
+        axis == 1 ? (sign > 0.0 ? glm::dvec3(0.6) : glm::dvec3(0.30, 0.22, 0.16)) : glm::dvec3(0.46, 0.42, 0.38);
     glm::dvec3 light(0.035);
     for (const Window& window : kWindows) {
       glm::dvec3 lamp(0.0);
@@ -197,7 +200,8 @@ Environment loadEnvironment(const std::string& nameOrPath) {
   const std::filesystem::path path(nameOrPath);
   std::error_code ignored;
   if (path.extension().empty() && !std::filesystem::exists(path, ignored)) {
-    throw usageError(nameOrPath, "no built-in environment of that name", "use sunny, overcast, windows, white, or a .hdr or .exr file");
+    throw usageError(nameOrPath, "no built-in environment of that name",
+                     "use sunny, overcast, windows, white, or a .hdr or .exr file");
   }
   return {path.stem().string(), readHdrImage(path)};
 }

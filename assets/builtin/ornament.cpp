@@ -20,13 +20,13 @@ constexpr double kPlinthTop = 0.46;
 constexpr double kDomeRadius = 0.40;
 constexpr double kDomeTop = 0.84;
 constexpr int kPillars = 8;
-constexpr double kPillarRing = 1.50;   ///< distance of the pillars' axes from the middle
-constexpr double kPillarRadius = 0.19; ///< of the foot
+constexpr double kPillarRing = 1.50;    ///< distance of the pillars' axes from the middle
+constexpr double kPillarRadius = 0.19;  ///< of the foot
 constexpr double kPillarHeight = 1.12;
 
-constexpr int kPlinthColumns = 128;    ///< also the dome's
+constexpr int kPlinthColumns = 128;  ///< also the dome's
 constexpr int kFloorColumns = 2 * kPlinthColumns;
-constexpr int kPillarColumns = 48;     ///< also the rim of the hole in the floor under a pillar
+constexpr int kPillarColumns = 48;  ///< also the rim of the hole in the floor under a pillar
 
 glm::dvec2 onCircle(double turns) { return {std::cos(2.0 * kPi * turns), std::sin(2.0 * kPi * turns)}; }
 
@@ -68,11 +68,13 @@ class FloorMesh {
 
   void build() {
     for (int ring = 0; ring <= kRings; ++ring) {
-      for (int column = 0; column < kColumns; ++column) grid_.push_back(isInsideHole(ring, column) ? kUnused : addVertex(gridPoint(ring, column)));
+      for (int column = 0; column < kColumns; ++column)
+        grid_.push_back(isInsideHole(ring, column) ? kUnused : addVertex(gridPoint(ring, column)));
     }
     for (int ring = 0; ring < kRings; ++ring) {
       for (int column = 0; column < kColumns; ++column) {
-        if (!isHoleCell(ring, column)) addQuad(vertex(ring, column), vertex(ring + 1, column), vertex(ring + 1, column + 1), vertex(ring, column + 1));
+        if (!isHoleCell(ring, column))
+          addQuad(vertex(ring, column), vertex(ring + 1, column), vertex(ring + 1, column + 1), vertex(ring, column + 1));
       }
     }
     for (int pillar = 0; pillar < kPillars; ++pillar) fillAroundPillar(pillar);
@@ -82,10 +84,10 @@ class FloorMesh {
   static constexpr int kColumns = kFloorColumns;
   static constexpr int kSector = kColumns / kPillars;  ///< columns a pillar
   static constexpr int kRings = 42;
-  static constexpr int kHoleColumns = 12;              ///< the block of cells around a pillar
+  static constexpr int kHoleColumns = 12;  ///< the block of cells around a pillar
   static constexpr int kHoleRings = 12;
   static constexpr int kFirstHoleRing = 23;
-  static constexpr int kLayers = 3;                    ///< from the block's edge to the pillar's foot
+  static constexpr int kLayers = 3;  ///< from the block's edge to the pillar's foot
   static constexpr std::uint32_t kUnused = std::numeric_limits<std::uint32_t>::max();
   static_assert(2 * (kHoleColumns + kHoleRings) == kPillarColumns);
 
@@ -123,7 +125,9 @@ class FloorMesh {
   }
 
   /// Corners against the clock in (x, -z), that is seen from above.
-  void addQuad(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) { primitive_.indices.insert(primitive_.indices.end(), {a, b, c, a, c, d}); }
+  void addQuad(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
+    primitive_.indices.insert(primitive_.indices.end(), {a, b, c, a, c, d});
+  }
 
   /// Rings that turn from the block's outline into the pillar's foot.
   void fillAroundPillar(int pillar) {
@@ -154,7 +158,9 @@ class FloorMesh {
 
  public:
   /// Direction of foot vertex `i` of a pillar. The block's first corner is seen from its middle at 5/8 of a turn from outwards.
-  static double footTurns(int pillar, int i) { return (pillar + 0.5) / kPillars + 0.625 - static_cast<double>(i) / kPillarColumns; }
+  static double footTurns(int pillar, int i) {
+    return (pillar + 0.5) / kPillars + 0.625 - static_cast<double>(i) / kPillarColumns;
+  }
 
  private:
   Primitive& primitive_;
@@ -166,13 +172,15 @@ void addFloor(Scene& scene, int material) {
   Primitive& primitive = addPart(scene, "floor", material);
   FloorMesh(primitive).build();
   // The edge of the slab.
-  const RoundedOutline outline({{{kFloorRadius, 0.0}, 0.0}, {{kFloorRadius + 0.05, 0.0}, 0.04}, {{kFloorRadius + 0.05, -0.14}, 0.0}});
+  const RoundedOutline outline(
+      {{{kFloorRadius, 0.0}, 0.0}, {{kFloorRadius + 0.05, 0.0}, 0.04}, {{kFloorRadius + 0.05, -0.14}, 0.0}});
   Patch patch;
   patch.columns = kFloorColumns;
   patch.rowParameters = outline.parameters(0.07, 0.5);
   patch.rows = static_cast<int>(patch.rowParameters.size()) - 1;
   patch.texcoordScale = {12.0, 0.2};
-  addPatch(primitive, patch, [&](double u, double v) { return revolved(outline.at(v), u); }, -1.0);
+  addPatch(
+      primitive, patch, [&](double u, double v) { return revolved(outline.at(v), u); }, -1.0);
 }
 
 // ---- pillars ----
@@ -201,13 +209,17 @@ void addPillars(Scene& scene, int material) {
   for (int pillar = 0; pillar < kPillars; ++pillar) {
     const glm::dvec3 foot = revolved({kPillarRing, 0.0}, (pillar + 0.5) / kPillars);
     const double start = FloorMesh::footTurns(pillar, 0);
-    addPatch(primitive, patch, [&](double u, double v) {
-      glm::dvec2 at = outline.at(v);
-      // Flutes with round bottoms and narrow ridges, run out softly below and above.
-      const double depth = 0.024 * smooth(kShaftLow, kShaftLow + 0.09, at.y) * (1.0 - smooth(kShaftHigh - 0.1, kShaftHigh - 0.01, at.y));
-      at.x -= depth * (1.0 - std::pow(std::abs(std::cos(kPi * kFlutes * u)), 3.0));
-      return foot + revolved(at, start + u);
-    }, 1.0);
+    addPatch(
+        primitive, patch,
+        [&](double u, double v) {
+          glm::dvec2 at = outline.at(v);
+          // Flutes with round bottoms and narrow ridges, run out softly below and above.
+          const double depth =
+              0.024 * smooth(kShaftLow, kShaftLow + 0.09, at.y) * (1.0 - smooth(kShaftHigh - 0.1, kShaftHigh - 0.01, at.y));
+          at.x -= depth * (1.0 - std::pow(std::abs(std::cos(kPi * kFlutes * u)), 3.0));
+          return foot + revolved(at, start + u);
+        },
+        1.0);
   }
 }
 
@@ -228,7 +240,8 @@ void addPlinth(Scene& scene, int material) {
   patch.rowParameters = outline.parameters(0.035, 0.5);
   patch.rows = static_cast<int>(patch.rowParameters.size()) - 1;
   patch.texcoordScale = {4.0, 1.0};
-  addPatch(primitive, patch, [&](double u, double v) { return revolved(outline.at(v), u); }, 1.0);
+  addPatch(
+      primitive, patch, [&](double u, double v) { return revolved(outline.at(v), u); }, 1.0);
 }
 
 constexpr int kGadroons = 8;
@@ -250,14 +263,18 @@ void addDome(Scene& scene, int material) {
   patch.rowParameters = outline.parameters(0.024, 0.5);
   patch.rows = static_cast<int>(patch.rowParameters.size()) - 1;
   patch.texcoordScale = {kGadroons / 2.0, 2.0};
-  addPatch(primitive, patch, [&](double u, double v) {
-    glm::dvec2 at = outline.at(v);
-    const double lobed = smooth(kPlinthTop + 0.055, kPlinthTop + 0.12, at.y) * (1.0 - smooth(kDomeTop - 0.13, kDomeTop - 0.075, at.y));
-    // Narrow in the groove, round on the lobe. The columns of vertices turn with the lobes, so that one runs along each groove.
-    const double c = std::pow(std::cos(kPi * kGadroons * u), 2.0);
-    at.x *= 1.0 - lobed * (0.07 * c + 0.15 * c * c * c);
-    return revolved(at, u + 0.55 * (at.y - kPlinthTop));
-  }, 1.0);
+  addPatch(
+      primitive, patch,
+      [&](double u, double v) {
+        glm::dvec2 at = outline.at(v);
+        const double lobed =
+            smooth(kPlinthTop + 0.055, kPlinthTop + 0.12, at.y) * (1.0 - smooth(kDomeTop - 0.13, kDomeTop - 0.075, at.y));
+        // Narrow in the groove, round on the lobe. The columns of vertices turn with the lobes, so that one runs along each groove.
+        const double c = std::pow(std::cos(kPi * kGadroons * u), 2.0);
+        at.x *= 1.0 - lobed * (0.07 * c + 0.15 * c * c * c);
+        return revolved(at, u + 0.55 * (at.y - kPlinthTop));
+      },
+      1.0);
 }
 
 // ---- knot ----
@@ -319,7 +336,8 @@ void addKnot(Scene& scene, int material) {
   patch.columns = 280;
   patch.rows = 10 * Knot::kRidges;
   patch.texcoordScale = {12.0, 1.0};
-  addPatch(primitive, patch, [&](double u, double v) { return knot.at(u, v); }, -1.0);
+  addPatch(
+      primitive, patch, [&](double u, double v) { return knot.at(u, v); }, -1.0);
 }
 
 // ---- materials ----
@@ -361,9 +379,8 @@ int limestone(Scene& scene) {
   material.metallicRoughnessTexture = addDataTexture(scene, "limestone_roughness", kTexels, [](glm::dvec2 uv) {
     return roughnessMetallic(0.72 + 0.1 * periodicTurbulence(uv, 4, 2, 43), 0.0);
   });
-  material.normalTexture = addNormalTexture(scene, "limestone_normal", kTexels, {0.8, 0.7}, [](glm::dvec2 uv) {
-    return 0.006 * periodicTurbulence(uv, 8, 2, 47);
-  });
+  material.normalTexture = addNormalTexture(scene, "limestone_normal", kTexels, {0.8, 0.7},
+                                            [](glm::dvec2 uv) { return 0.006 * periodicTurbulence(uv, 8, 2, 47); });
   return addMaterial(scene, material);
 }
 
@@ -376,11 +393,11 @@ int polishedMarble(Scene& scene) {
   material.name = "green marble";
   material.baseColorTexture = addColorTexture(scene, "marble_color", kTexels, [&](glm::dvec2 uv) {
     const double cloud = 0.5 + 0.5 * periodicTurbulence(uv, 4, 3, 59);
-    return glm::mix(glm::mix(glm::dvec3(0.012, 0.030, 0.027), glm::dvec3(0.04, 0.085, 0.068), cloud), glm::dvec3(0.55, 0.60, 0.52), 0.8 * vein(uv));
+    return glm::mix(glm::mix(glm::dvec3(0.012, 0.030, 0.027), glm::dvec3(0.04, 0.085, 0.068), cloud),
+                    glm::dvec3(0.55, 0.60, 0.52), 0.8 * vein(uv));
   });
-  material.metallicRoughnessTexture = addDataTexture(scene, "marble_roughness", kTexels, [&](glm::dvec2 uv) {
-    return roughnessMetallic(0.08 + 0.2 * vein(uv), 0.0);
-  });
+  material.metallicRoughnessTexture = addDataTexture(
+      scene, "marble_roughness", kTexels, [&](glm::dvec2 uv) { return roughnessMetallic(0.08 + 0.2 * vein(uv), 0.0); });
   return addMaterial(scene, material);
 }
 
@@ -391,16 +408,16 @@ int glazeAndGold(Scene& scene) {
   Material material;
   material.name = "glaze and gold";
   material.baseColorTexture = addColorTexture(scene, "glaze_color", kTexels, [&](glm::dvec2 uv) {
-    const glm::dvec3 glaze = glm::mix(glm::dvec3(0.015, 0.06, 0.22), glm::dvec3(0.03, 0.16, 0.34), 0.5 + 0.5 * periodicTurbulence(uv, 2, 3, 67));
+    const glm::dvec3 glaze =
+        glm::mix(glm::dvec3(0.015, 0.06, 0.22), glm::dvec3(0.03, 0.16, 0.34), 0.5 + 0.5 * periodicTurbulence(uv, 2, 3, 67));
     return glm::mix(glm::mix(glaze, glm::dvec3(0.45, 0.22, 0.12), worn(uv)), glm::dvec3(1.0, 0.72, 0.32), gold(uv));
   });
   material.metallicRoughnessTexture = addDataTexture(scene, "glaze_roughness", kTexels, [&](glm::dvec2 uv) {
     const double base = std::lerp(0.18, 0.8, worn(uv));
     return roughnessMetallic(std::lerp(base, 0.3, gold(uv)), gold(uv));
   });
-  material.normalTexture = addNormalTexture(scene, "glaze_normal", kTexels, {0.5, 0.4}, [&](glm::dvec2 uv) {
-    return 0.004 * gold(uv) + 0.006 * periodicNoise(uv, 4, 71);
-  });
+  material.normalTexture = addNormalTexture(scene, "glaze_normal", kTexels, {0.5, 0.4},
+                                            [&](glm::dvec2 uv) { return 0.004 * gold(uv) + 0.006 * periodicNoise(uv, 4, 71); });
   return addMaterial(scene, material);
 }
 

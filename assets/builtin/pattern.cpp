@@ -10,7 +10,8 @@ namespace {
 
 /// A number in [-1,1] for a lattice point.
 double latticeValue(int x, int y, std::uint32_t seed) {
-  std::uint32_t h = seed * 0x9e3779b9u + static_cast<std::uint32_t>(x) * 0x85ebca6bu + static_cast<std::uint32_t>(y) * 0xc2b2ae35u;
+  std::uint32_t h =
+      seed * 0x9e3779b9u + static_cast<std::uint32_t>(x) * 0x85ebca6bu + static_cast<std::uint32_t>(y) * 0xc2b2ae35u;
   h = (h ^ (h >> 15u)) * 0x2c1b3c6du;
   h = (h ^ (h >> 12u)) * 0x297a2d39u;
   h ^= h >> 15u;
@@ -80,7 +81,8 @@ int addDataTexture(Scene& scene, const std::string& name, int size, const std::f
   return addTexture(scene, name, size, data);
 }
 
-int addNormalTexture(Scene& scene, const std::string& name, int size, glm::dvec2 patchSize, const std::function<double(glm::dvec2)>& height) {
+int addNormalTexture(Scene& scene, const std::string& name, int size, glm::dvec2 patchSize,
+                     const std::function<double(glm::dvec2)>& height) {
   const double step = 0.5 / size;
   return addTexture(scene, name, size, [&](glm::dvec2 uv) {
     const double right = (height(uv + glm::dvec2(step, 0.0)) - height(uv - glm::dvec2(step, 0.0))) / (2.0 * step * patchSize.x);

@@ -23,6 +23,7 @@ int addColorTexture(Scene& scene, const std::string& name, int size, const std::
 int addDataTexture(Scene& scene, const std::string& name, int size, const std::function<glm::dvec3(glm::dvec2 uv)>& data);
 
 /// A tangent-space normal map (+Y up the image) of a height field. `height` and the patch's size along u and v in the same unit.
-int addNormalTexture(Scene& scene, const std::string& name, int size, glm::dvec2 patchSize, const std::function<double(glm::dvec2 uv)>& height);
+int addNormalTexture(Scene& scene, const std::string& name, int size, glm::dvec2 patchSize,
+                     const std::function<double(glm::dvec2 uv)>& height);
 
 }  // namespace chiaro::builtin

@@ -46,7 +46,8 @@ void addPatch(Primitive& primitive, const Patch& patch, const SurfaceFunction& s
   const auto base = static_cast<std::uint32_t>(primitive.positions.size());
   const auto stride = static_cast<std::uint32_t>(patch.columns + 1);
   for (int row = 0; row <= patch.rows; ++row) {
-    const double v = patch.rowParameters.empty() ? static_cast<double>(row) / patch.rows : patch.rowParameters[static_cast<std::size_t>(row)];
+    const double v =
+        patch.rowParameters.empty() ? static_cast<double>(row) / patch.rows : patch.rowParameters[static_cast<std::size_t>(row)];
     for (int column = 0; column <= patch.columns; ++column) {
       const double u = static_cast<double>(column) / patch.columns;
       const Frame frame = frameAt(surface, u, v, outward);
@@ -144,7 +145,8 @@ std::vector<double> RoundedOutline::parameters(double step, double turn) const {
   std::vector<double> result{0.0};
   double start = 0.0;
   for (const Piece& piece : pieces_) {
-    const int count = std::max({1, static_cast<int>(std::ceil(piece.length / step)), static_cast<int>(std::ceil(std::abs(piece.sweep) / turn))});
+    const int count = std::max(
+        {1, static_cast<int>(std::ceil(piece.length / step)), static_cast<int>(std::ceil(std::abs(piece.sweep) / turn))});
     for (int i = 1; i <= count; ++i) result.push_back((start + piece.length * i / count) / length_);
     start += piece.length;
   }

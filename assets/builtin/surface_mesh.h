@@ -14,9 +14,9 @@ using SurfaceFunction = std::function<glm::dvec3(double u, double v)>;
 
 /// How a parameter patch becomes a grid of vertices.
 struct Patch {
-  int columns = 1;                      ///< cells along u
-  int rows = 1;                         ///< cells along v
-  glm::dvec2 texcoordScale{1.0, 1.0};   ///< texture coordinates are (u, v) times this
+  int columns = 1;                     ///< cells along u
+  int rows = 1;                        ///< cells along v
+  glm::dvec2 texcoordScale{1.0, 1.0};  ///< texture coordinates are (u, v) times this
   /// Where grid row j lies in v; empty: evenly. rows + 1 increasing values from 0 to 1.
   std::vector<double> rowParameters;
 };
@@ -48,9 +48,9 @@ class RoundedOutline {
   struct Piece {
     glm::dvec2 from, to;
     glm::dvec2 center;
-    double radius;     ///< 0: a line
+    double radius;  ///< 0: a line
     double startAngle;
-    double sweep;      ///< radians, signed
+    double sweep;  ///< radians, signed
     double length;
   };
   std::vector<Piece> pieces_;

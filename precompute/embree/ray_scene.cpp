@@ -44,7 +44,9 @@ void refuseHoles(const RTCFilterFunctionNArguments* arguments) {
 template <auto release>
 struct Releaser {
   template <class Handle>
-  void operator()(Handle* handle) const { release(handle); }
+  void operator()(Handle* handle) const {
+    release(handle);
+  }
 };
 using DeviceHandle = std::unique_ptr<std::remove_pointer_t<RTCDevice>, Releaser<rtcReleaseDevice>>;
 using SceneHandle = std::unique_ptr<std::remove_pointer_t<RTCScene>, Releaser<rtcReleaseScene>>;
@@ -84,7 +86,8 @@ struct RayScene::Impl {
     if (!device) throw Error(ExitCode::failed, "embree", "no ray tracing device", "check the Embree installation");
     everything = newScene();
     // Embree's ray masks are a build option that Debian leaves off, so what occludes is a scene of its own where it differs.
-    const bool anyBlended = std::ranges::any_of(source.primitives, [&](const Primitive& primitive) { return isBlended(primitive); });
+    const bool anyBlended =
+        std::ranges::any_of(source.primitives, [&](const Primitive& primitive) { return isBlended(primitive); });
     if (anyBlended) occludersOnly = newScene();
     masks.reserve(source.primitives.size());  // filters point into it
     for (std::size_t i = 0; i < source.primitives.size(); ++i) attach(static_cast<std::uint32_t>(i));
@@ -112,10 +115,13 @@ struct RayScene::Impl {
     if (masked && !textured && material.baseColorFactor.a < material.alphaCutoff) return;  // all of it is a hole
 
     const GeometryHandle geometry(rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE));
-    copyIntoBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, primitive.positions.data(), primitive.positions.size(), sizeof(glm::vec3));
-    copyIntoBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, primitive.indices.data(), primitive.triangleCount(), 3 * sizeof(std::uint32_t));
+    copyIntoBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, primitive.positions.data(),
+                   primitive.positions.size(), sizeof(glm::vec3));
+    copyIntoBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, primitive.indices.data(), primitive.triangleCount(),
+                   3 * sizeof(std::uint32_t));
     if (textured) {
-      masks.push_back({&primitive, TextureSampler(*scene, material.baseColorTexture, TextureEncoding::srgb), material.baseColorFactor.a, material.alphaCutoff});
+      masks.push_back({&primitive, TextureSampler(*scene, material.baseColorTexture, TextureEncoding::srgb),
+                       material.baseColorFactor.a, material.alphaCutoff});
       rtcSetGeometryUserData(geometry.get(), &masks.back());
       rtcSetGeometryIntersectFilterFunction(geometry.get(), refuseHoles);
       rtcSetGeometryOccludedFilterFunction(geometry.get(), refuseHoles);
@@ -125,7 +131,8 @@ struct RayScene::Impl {
     if (occludersOnly && !isBlended(primitive)) rtcAttachGeometryByID(occludersOnly.get(), geometry.get(), index);
   }
 
-  static void copyIntoBuffer(RTCGeometry geometry, RTCBufferType type, RTCFormat format, const void* data, std::size_t count, std::size_t stride) {
+  static void copyIntoBuffer(RTCGeometry geometry, RTCBufferType type, RTCFormat format, const void* data, std::size_t count,
+                             std::size_t stride) {
     void* buffer = rtcSetNewGeometryBuffer(geometry, type, 0, format, stride, count);
     if (buffer == nullptr) throw Error(ExitCode::failed, "embree", "not enough memory for the triangles", "use a smaller scene");
     std::memcpy(buffer, data, count * stride);
@@ -134,7 +141,8 @@ struct RayScene::Impl {
   void throwOnDeviceError() const {
     const RTCError error = rtcGetDeviceError(device.get());
     if (error == RTC_ERROR_NONE) return;
-    throw Error(ExitCode::failed, "embree", "error " + std::to_string(static_cast<int>(error)) + " while building the ray tracing tree",
+    throw Error(ExitCode::failed, "embree",
+                "error " + std::to_string(static_cast<int>(error)) + " while building the ray tracing tree",
                 error == RTC_ERROR_OUT_OF_MEMORY ? "use a smaller scene" : "check the Embree installation");
   }
 
@@ -173,7 +181,8 @@ bool RayScene::occluded(glm::vec3 origin, glm::vec3 direction, float tnear, floa
   return ray.tfar == -kInfinity;  // Embree's mark
 }
 
-std::uint32_t RayScene::occluded16(glm::vec3 origin, const float* x, const float* y, const float* z, std::uint32_t active, float tnear, float tfar) const {
+std::uint32_t RayScene::occluded16(glm::vec3 origin, const float* x, const float* y, const float* z, std::uint32_t active,
+                                   float tnear, float tfar) const {
   if (!isFinite(origin)) return 0;
   alignas(64) RTCRay16 rays;
   alignas(64) int valid[16];

@@ -21,7 +21,9 @@ double stretched(const Brdf& brdf, glm::dvec3 w) { return std::hypot(brdf.alphaX
 
 double pow5(double x) { return x * x * x * x * x; }
 
-glm::dvec3 fresnel(const Brdf& brdf, double cosine) { return brdf.f0 + (brdf.f90 - brdf.f0) * pow5(1.0 - std::clamp(cosine, 0.0, 1.0)); }
+glm::dvec3 fresnel(const Brdf& brdf, double cosine) {
+  return brdf.f0 + (brdf.f90 - brdf.f0) * pow5(1.0 - std::clamp(cosine, 0.0, 1.0));
+}
 
 }  // namespace
 

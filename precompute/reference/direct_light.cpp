@@ -13,11 +13,14 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 /// Draws and weighs directions for one surface point and viewer.
 class LightGatherer {
  public:
-  LightGatherer(const Surface& surface, glm::dvec3 wo, const EnvironmentSampler& environment, const RayScene* rays, Strategy strategy)
+  LightGatherer(const Surface& surface, glm::dvec3 wo, const EnvironmentSampler& environment, const RayScene* rays,
+                Strategy strategy)
       : surface_(surface), wo_(wo * surface.worldFromTangent), environment_(environment), rays_(rays) {
     useEnvironment_ = environment.anyLight() && (strategy == Strategy::combined || strategy == Strategy::environment);
     useBrdf_ = strategy != Strategy::environment;
-    reflectionShare_ = strategy == Strategy::reflection ? 1.0 : strategy == Strategy::cosine ? 0.0 : reflectionShare(surface.brdf, wo_);
+    reflectionShare_ = strategy == Strategy::reflection ? 1.0
+                       : strategy == Strategy::cosine   ? 0.0
+                                                        : reflectionShare(surface.brdf, wo_);
   }
 
   /// One sample of the radiance towards the viewer.
@@ -50,7 +53,8 @@ class LightGatherer {
     if (!(value.x + value.y + value.z > 0.0)) return none;
     double density = useEnvironment_ ? light.density : 0.0;
     if (useBrdf_) {
-      density += reflectionShare_ * reflectionDensity(surface_.brdf, wo_, local) + (1.0 - reflectionShare_) * cosineDensity(local);
+      density +=
+          reflectionShare_ * reflectionDensity(surface_.brdf, wo_, local) + (1.0 - reflectionShare_) * cosineDensity(local);
     }
     if (!(density > 0.0)) return none;
     if (rays_ != nullptr) {
@@ -103,10 +107,11 @@ Incident incidentFrom(const Light& light, glm::dvec3 position) {
 
 }  // namespace
 
-Estimate environmentLight(const Surface& surface, glm::dvec3 wo, const EnvironmentSampler& environment, const RayScene* rays, int samples,
-                          std::uint32_t seed, Strategy strategy) {
+Estimate environmentLight(const Surface& surface, glm::dvec3 wo, const EnvironmentSampler& environment, const RayScene* rays,
+                          int samples, std::uint32_t seed, Strategy strategy) {
   LightGatherer gatherer(surface, wo, environment, rays, strategy);
-  const int sets = std::clamp(samples / 2, 2, 8);
+  // Few, as larger sets are more even; enough to know their variance.
+  const int sets = std::min(samples, std::clamp(samples / 16, 4, 8));
   const int setSize = (samples + sets - 1) / sets;
   Estimate estimate;
   glm::dvec3 squares(0.0);
@@ -130,7 +135,8 @@ Estimate punctualLight(const Surface& surface, glm::dvec3 wo, const std::vector<
   for (const Light& light : lights) {
     const Incident incident = incidentFrom(light, surface.position);
     if (!(incident.attenuation > 0.0 && glm::dot(surface.interpolatedNormal, incident.wi) > 0.0)) continue;
-    const glm::dvec3 reflected = brdfTimesCosine(surface.brdf, wo * surface.worldFromTangent, incident.wi * surface.worldFromTangent);
+    const glm::dvec3 reflected =
+        brdfTimesCosine(surface.brdf, wo * surface.worldFromTangent, incident.wi * surface.worldFromTangent);
     if (!(reflected.x + reflected.y + reflected.z > 0.0)) continue;
     if (rays != nullptr) {
       ++estimate.rays;

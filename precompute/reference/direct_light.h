@@ -15,7 +15,7 @@ namespace chiaro::reference {
 enum class Strategy { combined, environment, reflection, cosine };
 
 struct Estimate {
-  glm::dvec3 mean{0.0};            ///< radiance towards the viewer, W/(m^2 sr)
+  glm::dvec3 mean{0.0};  ///< radiance towards the viewer, W/(m^2 sr)
   glm::dvec3 varianceOfMean{0.0};
   std::uint64_t rays = 0;
 };
@@ -24,10 +24,11 @@ struct Estimate {
 /// its ray, started surfaceOffset() off the geometric surface, is free.
 ///
 /// `samples` pairs of directions, one of each pair from the environment and one from the BRDF (reflection or cosine, at
-/// random), each weighted by the balance heuristic over all three (Veach, 1997, eq. 9.8). They are drawn as up to 8 independently
-/// randomised point sets of equal size (so `samples` is rounded up to a multiple of their number); the variance is that between the sets.
-Estimate environmentLight(const Surface& surface, glm::dvec3 wo, const EnvironmentSampler& environment, const RayScene* rays, int samples,
-                          std::uint32_t seed, Strategy strategy = Strategy::combined);
+/// random), each weighted by the balance heuristic over all three (Veach, 1997, eq. 9.8). They are drawn as 4 to 8 independently
+/// randomised point sets of equal size (so `samples`, at least 2, is rounded up to a multiple of their number); the variance is
+/// that between the sets.
+Estimate environmentLight(const Surface& surface, glm::dvec3 wo, const EnvironmentSampler& environment, const RayScene* rays,
+                          int samples, std::uint32_t seed, Strategy strategy = Strategy::combined);
 
 /// Directional, point and spot lights as KHR_lights_punctual defines them; exact but for rounding.
 Estimate punctualLight(const Surface& surface, glm::dvec3 wo, const std::vector<Light>& lights, const RayScene* rays);

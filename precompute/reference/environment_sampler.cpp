@@ -23,7 +23,10 @@ std::pair<int, double> invert(const T* cumulative, int count, double random) {
 }  // namespace
 
 EnvironmentSampler::EnvironmentSampler(const Environment& environment, const glm::mat3& worldFromEnvironment)
-    : environment_(&environment), worldFromEnvironment_(worldFromEnvironment), width_(environment.radiance.width), height_(environment.radiance.height) {
+    : environment_(&environment),
+      worldFromEnvironment_(worldFromEnvironment),
+      width_(environment.radiance.width),
+      height_(environment.radiance.height) {
   const ImageRgb& image = environment.radiance;
   const auto brightness = [&](int x, int y) {
     const glm::dvec3 value(image.at((x + width_) % width_, std::clamp(y, 0, height_ - 1)));
@@ -36,11 +39,13 @@ EnvironmentSampler::EnvironmentSampler(const Environment& environment, const glm
   std::vector<double> sums(static_cast<std::size_t>(width_) + 1);
   for (int y = 0; y < height_; ++y) {
     // The mean over a texel of a bilinear interpolant weighs each axis by 1/8, 6/8, 1/8.
-    for (int x = 0; x < width_; ++x) vertical[static_cast<std::size_t>(x)] = (brightness(x, y - 1) + 6.0 * brightness(x, y) + brightness(x, y + 1)) / 8.0;
+    for (int x = 0; x < width_; ++x)
+      vertical[static_cast<std::size_t>(x)] = (brightness(x, y - 1) + 6.0 * brightness(x, y) + brightness(x, y + 1)) / 8.0;
     for (int x = 0; x < width_; ++x) {
       const double left = vertical[static_cast<std::size_t>((x + width_ - 1) % width_)];
       const double right = vertical[static_cast<std::size_t>((x + 1) % width_)];
-      sums[static_cast<std::size_t>(x) + 1] = sums[static_cast<std::size_t>(x)] + (left + 6.0 * vertical[static_cast<std::size_t>(x)] + right) / 8.0;
+      sums[static_cast<std::size_t>(x) + 1] =
+          sums[static_cast<std::size_t>(x)] + (left + 6.0 * vertical[static_cast<std::size_t>(x)] + right) / 8.0;
     }
     const double rowSum = sums.back();
     float* row = &columns_[static_cast<std::size_t>(y) * sums.size()];
@@ -81,7 +86,8 @@ glm::dvec3 EnvironmentSampler::bilinear(glm::dvec2 texelCoordinates) const {
 glm::dvec3 EnvironmentSampler::sample(glm::dvec2 random) const {
   const auto [row, rowPosition] = invert(rows_.data(), height_, random.y);
   const auto [column, columnPosition] = invert(cumulative(row), width_, random.x);
-  const double cosine = std::lerp(cosines_[static_cast<std::size_t>(row)], cosines_[static_cast<std::size_t>(row) + 1], rowPosition);
+  const double cosine =
+      std::lerp(cosines_[static_cast<std::size_t>(row)], cosines_[static_cast<std::size_t>(row) + 1], rowPosition);
   const double sine = std::sqrt(std::max(0.0, (1.0 - cosine) * (1.0 + cosine)));
   const double azimuth = 2.0 * kPi * ((column + columnPosition) / width_ - 0.5);
   return worldFromEnvironment_ * glm::dvec3(sine * std::sin(azimuth), cosine, -sine * std::cos(azimuth));
@@ -94,7 +100,8 @@ double EnvironmentSampler::density(glm::dvec2 at) const {
   // The differences of the stored lists, so that this is the density of `sample` exactly, rounding included.
   const double rowShare = rows_[static_cast<std::size_t>(row) + 1] - rows_[static_cast<std::size_t>(row)];
   const double columnShare = static_cast<double>(cumulative(row)[column + 1]) - static_cast<double>(cumulative(row)[column]);
-  const double solidAngle = 2.0 * kPi / width_ * (cosines_[static_cast<std::size_t>(row)] - cosines_[static_cast<std::size_t>(row) + 1]);
+  const double solidAngle =
+      2.0 * kPi / width_ * (cosines_[static_cast<std::size_t>(row)] - cosines_[static_cast<std::size_t>(row) + 1]);
   return rowShare * columnShare / solidAngle;
 }
 

@@ -32,16 +32,18 @@ class EnvironmentSampler {
   glm::dvec2 texelCoordinates(glm::dvec3 direction) const;
   glm::dvec3 bilinear(glm::dvec2 texelCoordinates) const;
   double density(glm::dvec2 texelCoordinates) const;
-  const float* cumulative(int row) const { return &columns_[static_cast<std::size_t>(row) * (static_cast<std::size_t>(width_) + 1)]; }
+  const float* cumulative(int row) const {
+    return &columns_[static_cast<std::size_t>(row) * (static_cast<std::size_t>(width_) + 1)];
+  }
 
   const Environment* environment_;
   glm::dmat3 worldFromEnvironment_;
   int width_;
   int height_;
   double total_ = 0.0;
-  std::vector<double> rows_;    ///< height + 1: share of the light above each row
-  std::vector<float> columns_;  ///< height x (width + 1): the same within each row
-  std::vector<double> cosines_; ///< height + 1: of the polar angle at the upper edge of each row
+  std::vector<double> rows_;     ///< height + 1: share of the light above each row
+  std::vector<float> columns_;   ///< height x (width + 1): the same within each row
+  std::vector<double> cosines_;  ///< height + 1: of the polar angle at the upper edge of each row
 };
 
 }  // namespace chiaro::reference

@@ -61,13 +61,20 @@ struct Seen {
 class Renderer {
  public:
   Renderer(const Scene& scene, const Environment& environment, const Camera& camera, const ReferenceSettings& settings)
-      : scene_(scene), camera_(camera), settings_(settings), rays_(scene), surfaces_(scene), environment_(environment, settings.worldFromEnvironment) {}
+      : scene_(scene),
+        camera_(camera),
+        settings_(settings),
+        rays_(scene),
+        surfaces_(scene),
+        environment_(environment, settings.worldFromEnvironment) {}
 
   void renderPixel(int x, int y, ReferenceImage& image, std::uint64_t& rays) const {
     const int grid = settings_.pixelGrid;
     const int samples = (settings_.samplesPerPixel + grid * grid - 1) / (grid * grid);
-    const std::size_t index = static_cast<std::size_t>(y) * static_cast<std::size_t>(settings_.width) + static_cast<std::size_t>(x);
-    const std::uint32_t pixelSeed = hashWords(hashWords(settings_.seed, static_cast<std::uint32_t>(x)), static_cast<std::uint32_t>(y));
+    const std::size_t index =
+        static_cast<std::size_t>(y) * static_cast<std::size_t>(settings_.width) + static_cast<std::size_t>(x);
+    const std::uint32_t pixelSeed =
+        hashWords(hashWords(settings_.seed, static_cast<std::uint32_t>(x)), static_cast<std::uint32_t>(y));
     const double aspect = static_cast<double>(settings_.width) / settings_.height;
     Seen sum;
     for (int point = 0; point < grid * grid; ++point) {
@@ -95,14 +102,16 @@ class Renderer {
       ++seen.rays;
       if (!rays_.intersect(ray.origin, ray.direction, near, ray.far, hit)) break;
       const glm::vec3 position = ray.origin + hit.distance * ray.direction;
-      near = std::max(hit.distance + rays_.surfaceOffset(position), std::nextafter(hit.distance, std::numeric_limits<float>::infinity()));
+      near = std::max(hit.distance + rays_.surfaceOffset(position),
+                      std::nextafter(hit.distance, std::numeric_limits<float>::infinity()));
       if (surfaces_.isCulled(hit, ray.direction)) continue;
       const glm::dvec3 wo = -glm::normalize(glm::dvec3(ray.direction));
       const Surface surface = surfaces_.at(hit, wo);
       const double weight = transmitted * surface.opacity;
       if (weight > 0.0) {
         const RayScene* occluders = settings_.shadows ? &rays_ : nullptr;
-        const Estimate sky = environmentLight(surface, wo, environment_, occluders, samples, hashWords(seed, static_cast<std::uint32_t>(layer)));
+        const Estimate sky =
+            environmentLight(surface, wo, environment_, occluders, samples, hashWords(seed, static_cast<std::uint32_t>(layer)));
         const Estimate lamps = punctualLight(surface, wo, scene_.lights, occluders);
         seen.radiance += weight * (sky.mean + lamps.mean + surface.emission);
         seen.variance += weight * weight * sky.varianceOfMean;
@@ -111,7 +120,8 @@ class Renderer {
       transmitted *= 1.0 - surface.opacity;
     }
     seen.coverage = 1.0 - transmitted;
-    if (settings_.background && transmitted > 0.0) seen.radiance += transmitted * environment_.radiance(glm::normalize(glm::dvec3(ray.direction)));
+    if (settings_.background && transmitted > 0.0)
+      seen.radiance += transmitted * environment_.radiance(glm::normalize(glm::dvec3(ray.direction)));
     return seen;
   }
 
@@ -124,11 +134,16 @@ class Renderer {
 };
 
 void check(const Environment& environment, const ReferenceSettings& settings) {
-  const auto refuse = [](const char* option, const std::string& value, const char* remedy) { throw usageError(option, value + " is out of range", remedy); };
-  if (settings.width < 1 || settings.height < 1) refuse("size", std::to_string(settings.width) + "x" + std::to_string(settings.height), "give at least 1x1");
-  if (settings.samplesPerPixel < 2) refuse("samples", std::to_string(settings.samplesPerPixel), "give at least 2: one sample has no variance");
+  const auto refuse = [](const char* option, const std::string& value, const char* remedy) {
+    throw usageError(option, value + " is out of range", remedy);
+  };
+  if (settings.width < 1 || settings.height < 1)
+    refuse("size", std::to_string(settings.width) + "x" + std::to_string(settings.height), "give at least 1x1");
+  if (settings.samplesPerPixel < 2)
+    refuse("samples", std::to_string(settings.samplesPerPixel), "give at least 2: one sample has no variance");
   if (settings.pixelGrid < 1 || settings.pixelGrid > 64) refuse("pixel grid", std::to_string(settings.pixelGrid), "give 1 to 64");
-  if (environment.radiance.texels.empty()) throw inputError(environment.name, "the environment has no texels", "give another environment");
+  if (environment.radiance.texels.empty())
+    throw inputError(environment.name, "the environment has no texels", "give another environment");
 }
 
 /// Root mean square over pixels and channels, where anything is seen.
@@ -147,8 +162,8 @@ double noiseOf(const ReferenceImage& image) {
 
 }  // namespace
 
-ReferenceImage renderReference(const Scene& scene, const Environment& environment, const Camera& camera, const ReferenceSettings& settings,
-                               const ProgressHandler& progress) {
+ReferenceImage renderReference(const Scene& scene, const Environment& environment, const Camera& camera,
+                               const ReferenceSettings& settings, const ProgressHandler& progress) {
   check(environment, settings);
   const Renderer renderer(scene, environment, camera, settings);
   ReferenceImage image;

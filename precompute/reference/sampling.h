@@ -53,7 +53,8 @@ class PointSet {
   /// they can be used side by side as further dimensions.
   glm::dvec2 pair(std::uint32_t index, std::uint32_t sequence) const {
     const std::uint32_t shuffled = shuffle(index, sequence);
-    return {fraction(owenScramble(reverseBits(shuffled), seeds_[sequence].first)), fraction(owenScramble(secondSobol(shuffled), seeds_[sequence].second))};
+    return {fraction(owenScramble(reverseBits(shuffled), seeds_[sequence].first)),
+            fraction(owenScramble(secondSobol(shuffled), seeds_[sequence].second))};
   }
   /// Its first coordinate.
   double single(std::uint32_t index, std::uint32_t sequence) const {

@@ -29,7 +29,9 @@ glm::dvec3 anyPerpendicular(glm::dvec3 normal) {
   return glm::normalize(axis - normal * glm::dot(normal, axis));
 }
 
-glm::dvec3 perpendicularPart(glm::dvec3 v, glm::dvec3 normal) { return directionOr(v - normal * glm::dot(normal, v), anyPerpendicular(normal)); }
+glm::dvec3 perpendicularPart(glm::dvec3 v, glm::dvec3 normal) {
+  return directionOr(v - normal * glm::dot(normal, v), anyPerpendicular(normal));
+}
 
 }  // namespace
 
@@ -67,7 +69,9 @@ Surface SurfaceReader::at(const RayHit& hit, glm::dvec3 wo) const {
   const bool front = glm::dot(geometricNormal, wo) >= 0.0;
   const double side = front ? 1.0 : -1.0;
 
-  const glm::dvec3 normal = primitive.normals.empty() ? geometricNormal : directionOr(interpolate(primitive.normals, corner, hit.barycentric), geometricNormal);
+  const glm::dvec3 normal = primitive.normals.empty()
+                                ? geometricNormal
+                                : directionOr(interpolate(primitive.normals, corner, hit.barycentric), geometricNormal);
   glm::dvec3 tangent = anyPerpendicular(normal);
   double handedness = 1.0;
   if (!primitive.tangents.empty()) {
@@ -100,7 +104,8 @@ Surface SurfaceReader::at(const RayHit& hit, glm::dvec3 wo) const {
   const glm::dvec3 along = perpendicularPart(stretchDirection, seen);
   surface.worldFromTangent = glm::dmat3(along, glm::cross(seen, along), seen);
 
-  const glm::dvec4 baseColor = glm::dvec4(material.baseColorFactor) * lookUp(material.baseColorTexture, TextureEncoding::srgb, texcoord);
+  const glm::dvec4 baseColor =
+      glm::dvec4(material.baseColorFactor) * lookUp(material.baseColorTexture, TextureEncoding::srgb, texcoord);
   const glm::dvec4 metallicRoughness = lookUp(material.metallicRoughnessTexture, TextureEncoding::linear, texcoord);
   const double metallic = static_cast<double>(material.metallicFactor) * metallicRoughness.z;
   const double roughness = static_cast<double>(material.roughnessFactor) * metallicRoughness.y;
@@ -109,7 +114,8 @@ Surface SurfaceReader::at(const RayHit& hit, glm::dvec3 wo) const {
   surface.brdf.f0 = glm::mix(glm::dvec3(0.04), glm::dvec3(baseColor), metallic);
   surface.brdf.alphaX = std::lerp(alpha, 1.0, anisotropy * anisotropy);
   surface.brdf.alphaY = alpha;
-  surface.emission = glm::dvec3(material.emissiveFactor) * glm::dvec3(lookUp(material.emissiveTexture, TextureEncoding::srgb, texcoord));
+  surface.emission =
+      glm::dvec3(material.emissiveFactor) * glm::dvec3(lookUp(material.emissiveTexture, TextureEncoding::srgb, texcoord));
   if (material.alphaMode == AlphaMode::blend) surface.opacity = std::clamp(baseColor.w, 0.0, 1.0);
   return surface;
 }

@@ -17,10 +17,10 @@ struct Surface {
   glm::dvec3 position{0.0};
   glm::dvec3 geometricNormal{0.0, 1.0, 0.0};
   glm::dvec3 interpolatedNormal{0.0, 1.0, 0.0};  ///< of the mesh, before any normal map
-  glm::dmat3 worldFromTangent{1.0};              ///< columns: tangent of the anisotropy, bitangent, shading normal (all three orthonormal)
+  glm::dmat3 worldFromTangent{1.0};  ///< columns: tangent of the anisotropy, bitangent, shading normal (all three orthonormal)
   Brdf brdf;
   glm::dvec3 emission{0.0};
-  double opacity = 1.0;                          ///< below 1 for alpha-blended materials only
+  double opacity = 1.0;  ///< below 1 for alpha-blended materials only
 };
 
 /// Reads surfaces of one scene. Thread safe once made.

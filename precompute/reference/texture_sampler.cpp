@@ -17,12 +17,14 @@ int wrapped(int index, int size, Wrap wrap) {
     return remainder < 0 ? remainder + period : remainder;
   };
   switch (wrap) {
-    case Wrap::repeat: return modulo(index, size);
+    case Wrap::repeat:
+      return modulo(index, size);
     case Wrap::mirroredRepeat: {
       const int folded = modulo(index, 2 * size);
       return folded < size ? folded : 2 * size - 1 - folded;
     }
-    case Wrap::clampToEdge: break;
+    case Wrap::clampToEdge:
+      break;
   }
   return std::clamp(index, 0, size - 1);
 }
@@ -46,9 +48,7 @@ const std::array<float, 256>& srgbTable() {
 
 }  // namespace
 
-float srgbToLinear(float encoded) {
-  return encoded <= 0.04045f ? encoded / 12.92f : std::pow((encoded + 0.055f) / 1.055f, 2.4f);
-}
+float srgbToLinear(float encoded) { return encoded <= 0.04045f ? encoded / 12.92f : std::pow((encoded + 0.055f) / 1.055f, 2.4f); }
 
 TextureSampler::TextureSampler(const Scene& scene, int texture, TextureEncoding encoding)
     : description_(scene.textures.at(static_cast<std::size_t>(texture))), srgb_(encoding == TextureEncoding::srgb) {
@@ -85,8 +85,8 @@ glm::vec4 TextureSampler::at(glm::vec2 texcoord) const {
 glm::vec2 texcoordAt(const Primitive& primitive, std::uint32_t triangle, glm::vec2 barycentric) {
   if (primitive.texcoords.empty()) return glm::vec2(0.0f);
   const std::uint32_t* corner = &primitive.indices[3 * static_cast<std::size_t>(triangle)];
-  return (1.0f - barycentric.x - barycentric.y) * primitive.texcoords[corner[0]] + barycentric.x * primitive.texcoords[corner[1]] +
-         barycentric.y * primitive.texcoords[corner[2]];
+  return (1.0f - barycentric.x - barycentric.y) * primitive.texcoords[corner[0]] +
+         barycentric.x * primitive.texcoords[corner[1]] + barycentric.y * primitive.texcoords[corner[2]];
 }
 
 }  // namespace chiaro

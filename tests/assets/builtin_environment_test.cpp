@@ -21,7 +21,8 @@ template <class Weight>
 double integrate(const ImageRgb& image, Weight weight) {
   double sum = 0.0;
   for (int y = 0; y < image.height; ++y) {
-    const double solidAngle = 2.0 * kPi / image.width * (std::cos(kPi * y / image.height) - std::cos(kPi * (y + 1) / image.height));
+    const double solidAngle =
+        2.0 * kPi / image.width * (std::cos(kPi * y / image.height) - std::cos(kPi * (y + 1) / image.height));
     for (int x = 0; x < image.width; ++x) {
       const glm::dvec3 w = lobe64::directionFromEquirect(glm::dvec2((x + 0.5) / image.width, (y + 0.5) / image.height));
       sum += weight(w) * luminance(glm::dvec3(image.at(x, y))) * solidAngle;
@@ -68,8 +69,10 @@ TEST(BuiltinEnvironment, TheSunGivesFourTimesTheSkysIrradiance) {
   }
   sun = glm::normalize(middle);
   const double nearSun = std::cos(1.7 * kPi / 180.0);
-  const double sunIrradiance = integrate(image, [&](glm::dvec3 w) { return glm::dot(w, sun) > nearSun ? glm::dot(w, sun) : 0.0; });
-  const double skyIrradiance = integrate(image, [&](glm::dvec3 w) { return glm::dot(w, sun) > nearSun ? 0.0 : std::max(w.y, 0.0); });
+  const double sunIrradiance =
+      integrate(image, [&](glm::dvec3 w) { return glm::dot(w, sun) > nearSun ? glm::dot(w, sun) : 0.0; });
+  const double skyIrradiance =
+      integrate(image, [&](glm::dvec3 w) { return glm::dot(w, sun) > nearSun ? 0.0 : std::max(w.y, 0.0); });
   // 3 %: the aureole within 1.7 degrees counts for the sun, and the disc's edge is sampled on 8 x 8 points a texel.
   EXPECT_NEAR(sunIrradiance / skyIrradiance, 4.0, 0.12);
   EXPECT_GT(sun.y, 0.5);
@@ -88,7 +91,8 @@ TEST(BuiltinEnvironment, TheWindowsAreSmallAndGiveMostOfTheLight) {
   double bright = 0.0;
   double share = 0.0;
   for (int y = 0; y < image.height; ++y) {
-    const double solidAngle = 2.0 * kPi / image.width * (std::cos(kPi * y / image.height) - std::cos(kPi * (y + 1) / image.height));
+    const double solidAngle =
+        2.0 * kPi / image.width * (std::cos(kPi * y / image.height) - std::cos(kPi * (y + 1) / image.height));
     for (int x = 0; x < image.width; ++x) {
       const double value = luminance(glm::dvec3(image.at(x, y)));
       if (!(value > 5.0)) continue;

@@ -15,7 +15,8 @@ namespace {
 
 class BuiltinScene : public testing::TestWithParam<std::string> {};
 
-INSTANTIATE_TEST_SUITE_P(All, BuiltinScene, testing::ValuesIn(builtinSceneNames()), [](const auto& parameter) { return parameter.param; });
+INSTANTIATE_TEST_SUITE_P(All, BuiltinScene, testing::ValuesIn(builtinSceneNames()),
+                         [](const auto& parameter) { return parameter.param; });
 
 TEST_P(BuiltinScene, HasWholeAttributesAndIndicesInRange) {
   const Scene scene = builtinScene(GetParam());
@@ -31,8 +32,9 @@ TEST_P(BuiltinScene, HasWholeAttributesAndIndicesInRange) {
     for (std::size_t i = 0; i < count; ++i) {
       const glm::dvec3 normal(primitive.normals[i]);
       const glm::dvec3 tangent(primitive.tangents[i]);
-      const double error = std::max({std::abs(glm::length(normal) - 1.0), std::abs(glm::length(tangent) - 1.0), std::abs(glm::dot(normal, tangent)),
-                                     std::abs(std::abs(static_cast<double>(primitive.tangents[i].w)) - 1.0)});
+      const double error =
+          std::max({std::abs(glm::length(normal) - 1.0), std::abs(glm::length(tangent) - 1.0),
+                    std::abs(glm::dot(normal, tangent)), std::abs(std::abs(static_cast<double>(primitive.tangents[i].w)) - 1.0)});
       if (!(error <= worst)) worst = error;
     }
     EXPECT_LE(worst, 1e-6) << primitive.name;  // float rounding of unit vectors
@@ -46,7 +48,8 @@ TEST_P(BuiltinScene, TrianglesFaceAsTheirNormalsDo) {
     for (std::size_t triangle = 0; triangle < primitive.triangleCount(); ++triangle) {
       const std::uint32_t* corner = &primitive.indices[3 * triangle];
       const glm::dvec3 a(primitive.positions[corner[0]]);
-      const glm::dvec3 cross = glm::cross(glm::dvec3(primitive.positions[corner[1]]) - a, glm::dvec3(primitive.positions[corner[2]]) - a);
+      const glm::dvec3 cross =
+          glm::cross(glm::dvec3(primitive.positions[corner[1]]) - a, glm::dvec3(primitive.positions[corner[2]]) - a);
       const glm::dvec3 normal(primitive.normals[corner[0]] + primitive.normals[corner[1]] + primitive.normals[corner[2]]);
       if (!(glm::dot(cross, normal) > 0.0)) ++against;
     }
@@ -114,7 +117,10 @@ TEST(BuiltinOrnament, TexturesDecodeAndRepeatWithoutASeam) {
     int within = 0;
     int across = 0;
     const auto at = [&](int x, int y, int c) {
-      return static_cast<int>(image.texels[4 * (static_cast<std::size_t>(y % image.height) * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(x % image.width)) + static_cast<std::size_t>(c)]);
+      return static_cast<int>(
+          image.texels[4 * (static_cast<std::size_t>(y % image.height) * static_cast<std::size_t>(image.width) +
+                            static_cast<std::size_t>(x % image.width)) +
+                       static_cast<std::size_t>(c)]);
     };
     for (int y = 0; y < image.height; ++y) {
       for (int x = 0; x < image.width; ++x) {
@@ -167,7 +173,8 @@ TEST(BuiltinOrnament, TheFloorMeetsWhatStandsOnIt) {
       ++atPillars;
       bool found = false;
       for (float dx = -1.0f; dx <= 1.0f && !found; ++dx) {  // neighbours: rounding may fall on either side
-        for (float dz = -1.0f; dz <= 1.0f && !found; ++dz) found = feet.contains({std::round(p.x * 1e5f) + dx, 0.0f, std::round(p.z * 1e5f) + dz});
+        for (float dz = -1.0f; dz <= 1.0f && !found; ++dz)
+          found = feet.contains({std::round(p.x * 1e5f) + dx, 0.0f, std::round(p.z * 1e5f) + dz});
       }
       EXPECT_TRUE(found) << p.x << " " << p.z;
     }

@@ -19,7 +19,8 @@ constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 /// A unit quad in the plane y = height, facing up, times `scale`.
 Primitive quad(float height, float scale = 1.0f) {
   Primitive primitive;
-  primitive.positions = {scale * glm::vec3(-1, height, -1), scale * glm::vec3(-1, height, 1), scale * glm::vec3(1, height, 1), scale * glm::vec3(1, height, -1)};
+  primitive.positions = {scale * glm::vec3(-1, height, -1), scale * glm::vec3(-1, height, 1), scale * glm::vec3(1, height, 1),
+                         scale * glm::vec3(1, height, -1)};
   primitive.texcoords = {{0, 0}, {0, 1}, {1, 1}, {1, 0}};
   primitive.indices = {0, 1, 2, 0, 2, 3};
   return primitive;
@@ -45,7 +46,8 @@ TEST(RayScene, ReportsTheNearestHit) {
   const Primitive& primitive = scene.primitives[1];
   const std::uint32_t* corner = &primitive.indices[3 * hit.triangle];
   const glm::vec3 position = (1.0f - hit.barycentric.x - hit.barycentric.y) * primitive.positions[corner[0]] +
-                             hit.barycentric.x * primitive.positions[corner[1]] + hit.barycentric.y * primitive.positions[corner[2]];
+                             hit.barycentric.x * primitive.positions[corner[1]] +
+                             hit.barycentric.y * primitive.positions[corner[2]];
   EXPECT_LE(glm::length(position - glm::vec3(0.5f, 1.0f, 0.25f)), 1e-6f);
   ASSERT_TRUE(rays.intersect({0.5f, 3.0f, 0.25f}, {0, -1, 0}, 2.5f, kFar, hit)) << "tnear skips the upper quad";
   EXPECT_EQ(hit.primitive, 0u);
@@ -187,7 +189,9 @@ TEST(RayScene, OffsetRaysNeitherHitTheirOwnSurfaceNorMissIt) {
         for (int column = 0; column <= kColumns; ++column) {
           const double theta = M_PI * ring / kRings;
           const double phi = 2.0 * M_PI * column / kColumns;
-          sphere.positions.push_back(scale * (glm::vec3(std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi)) + glm::vec3(shift)));
+          sphere.positions.push_back(
+              scale *
+              (glm::vec3(std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi)) + glm::vec3(shift)));
         }
       }
       for (std::uint32_t ring = 0; ring < kRings; ++ring) {

@@ -29,7 +29,8 @@ double furnace(double alphaX, double alphaY, glm::dvec3 wo) {
     for (int j = 0; j < 2 * kRows; ++j) {
       const glm::dvec3 wi = direction((i + 0.5) / kRows, kPi * (j + 0.5) / kRows);
       const glm::dvec3 wh = glm::normalize(wo + wi);
-      sum += lobe64::ggxDistributionAnisotropic(wh, alphaX, alphaY) * lobe64::ggxVisibilityAnisotropic(wo, wi, alphaX, alphaY) * wi.z;
+      sum += lobe64::ggxDistributionAnisotropic(wh, alphaX, alphaY) * lobe64::ggxVisibilityAnisotropic(wo, wi, alphaX, alphaY) *
+             wi.z;
     }
   }
   return sum * 2.0 * kPi / (2.0 * kRows * kRows);
@@ -49,7 +50,8 @@ TEST(ReferenceBrdf, AgreesWithTheLobesWrittenApartFromIt) {
     const glm::dvec3 wi = direction(1e-3 + 0.999 * uniform(random), 2.0 * kPi * uniform(random));
     const glm::dvec3 wh = glm::normalize(wo + wi);
     const glm::dvec3 f = lobe64::fresnelSchlick(brdf.f0, glm::dot(wo, wh));
-    const double specular = lobe64::ggxDistributionAnisotropic(wh, brdf.alphaX, brdf.alphaY) * lobe64::ggxVisibilityAnisotropic(wo, wi, brdf.alphaX, brdf.alphaY);
+    const double specular = lobe64::ggxDistributionAnisotropic(wh, brdf.alphaX, brdf.alphaY) *
+                            lobe64::ggxVisibilityAnisotropic(wo, wi, brdf.alphaX, brdf.alphaY);
     const glm::dvec3 expected = (f * specular + (1.0 - f) * brdf.diffuse / kPi) * wi.z;
     const glm::dvec3 got = brdfTimesCosine(brdf, wo, wi);
     for (int c = 0; c < 3; ++c) {
@@ -86,7 +88,8 @@ TEST(ReferenceBrdf, DensitiesIntegrateToOne) {
         }
       }
       const double cell = 4.0 * kPi / (2.0 * kRows * kRows);
-      EXPECT_NEAR(reflection * cell, 1.0, 2e-4) << cosine;  // midpoint rule over lobes some 100 cells wide with an edge at wh.z = 0
+      EXPECT_NEAR(reflection * cell, 1.0, 2e-4)
+          << cosine;  // midpoint rule over lobes some 100 cells wide with an edge at wh.z = 0
       EXPECT_NEAR(lambert * cell, 1.0, 1e-5);
     }
   }
@@ -135,7 +138,8 @@ TEST(ReferenceBrdf, WhiteFurnaceLosesOnlyWhatSingleScatteringLoses) {
         }
         const double albedo = sum / kSamples;
         EXPECT_LE(albedo, 1.0 + 1e-9);
-        EXPECT_NEAR(albedo, furnace(alpha, alphaY, wo), 2e-4) << alpha << " " << alphaY << " " << cosine;  // both are good to 1e-4
+        EXPECT_NEAR(albedo, furnace(alpha, alphaY, wo), 2e-4)
+            << alpha << " " << alphaY << " " << cosine;  // both are good to 1e-4
       }
     }
   }

@@ -27,13 +27,16 @@ Environment makeEnvironment(const std::function<glm::dvec3(glm::dvec3)>& radianc
   Environment environment{"test", ImageRgb{256, 128, {}}};
   for (int y = 0; y < 128; ++y) {
     for (int x = 0; x < 256; ++x) {
-      environment.radiance.texels.emplace_back(radiance(lobe64::directionFromEquirect(glm::dvec2((x + 0.5) / 256.0, (y + 0.5) / 128.0))));
+      environment.radiance.texels.emplace_back(
+          radiance(lobe64::directionFromEquirect(glm::dvec2((x + 0.5) / 256.0, (y + 0.5) / 128.0))));
     }
   }
   return environment;
 }
 
-Environment whiteEnvironment() { return makeEnvironment([](glm::dvec3) { return glm::dvec3(1.0); }); }
+Environment whiteEnvironment() {
+  return makeEnvironment([](glm::dvec3) { return glm::dvec3(1.0); });
+}
 
 Surface lambert(glm::dvec3 normal, double albedo) {
   Surface surface;
@@ -165,7 +168,9 @@ TEST(ReferenceLight, TheErrorFallsAsStatedAndAtLeastAsTheRootOfTheSamples) {
 }
 
 TEST(ReferenceLight, EveryStrategyGivesTheSameLight) {
-  const Environment environment = makeEnvironment([](glm::dvec3 w) { return glm::dvec3(0.2 + 20.0 * std::exp(30.0 * (glm::dot(w, glm::normalize(glm::dvec3(0.5, 0.7, 0.2))) - 1.0))); });
+  const Environment environment = makeEnvironment([](glm::dvec3 w) {
+    return glm::dvec3(0.2 + 20.0 * std::exp(30.0 * (glm::dot(w, glm::normalize(glm::dvec3(0.5, 0.7, 0.2))) - 1.0)));
+  });
   Scene scene;
   scene.materials.resize(1);
   scene.primitives.push_back(square({0.3f, 0, 0}, {0, 0, 0.3f}, {0.3f, 0.5f, 0.1f}));
@@ -188,7 +193,8 @@ TEST(ReferenceLight, EveryStrategyGivesTheSameLight) {
 }
 
 TEST(ReferenceEnvironment, DensityIntegratesToOneAndSamplesFollowIt) {
-  const Environment environment = makeEnvironment([](glm::dvec3 w) { return glm::dvec3(w.y > 0.9 ? 50.0 : 0.0, w.x > 0.0 ? 1.0 : 0.0, 0.1 * w.z * w.z); });
+  const Environment environment =
+      makeEnvironment([](glm::dvec3 w) { return glm::dvec3(w.y > 0.9 ? 50.0 : 0.0, w.x > 0.0 ? 1.0 : 0.0, 0.1 * w.z * w.z); });
   const glm::mat3 turn(0, 0, -1, 0, 1, 0, 1, 0, 0);
   const EnvironmentSampler sampler(environment, turn);
   double total = 0.0;
@@ -211,7 +217,8 @@ TEST(ReferenceEnvironment, DensityIntegratesToOneAndSamplesFollowIt) {
     ASSERT_GT(at.density, 0.0);
     estimate += at.radiance / (at.density * kSamples);
   }
-  for (int c = 0; c < 3; ++c) EXPECT_NEAR(estimate[c] / light[c], 1.0, 2e-3);  // quadrature of 16 points a texel against 131,072 samples
+  for (int c = 0; c < 3; ++c)
+    EXPECT_NEAR(estimate[c] / light[c], 1.0, 2e-3);  // quadrature of 16 points a texel against 131,072 samples
 }
 
 TEST(ReferenceEnvironment, ReadsTheMapAsTheSharedConventionSays) {
@@ -239,7 +246,9 @@ TEST(ReferenceEnvironment, ABlackOneGivesNothing) {
 TEST(ReferenceTexture, WrapsAndInterpolates) {
   Scene scene;
   const int texture = addTexture(scene, Image8{2, 1, {0, 0, 0, 255, 255, 128, 0, 255}});
-  const auto at = [&](float u, TextureEncoding encoding = TextureEncoding::linear) { return TextureSampler(scene, texture, encoding).at({u, 0.5f}); };
+  const auto at = [&](float u, TextureEncoding encoding = TextureEncoding::linear) {
+    return TextureSampler(scene, texture, encoding).at({u, 0.5f});
+  };
   EXPECT_NEAR(at(0.25f).x, 0.0f, 1e-6f);
   EXPECT_NEAR(at(0.75f).x, 1.0f, 1e-6f);
   EXPECT_NEAR(at(0.5f).x, 0.5f, 1e-6f);
@@ -359,7 +368,8 @@ TEST(ReferencePicture, ASphereUnderAWhiteSkyIsTheQuadrature) {
     for (int x = 0; x < settings.width; ++x) {
       // The same ray against the ideal sphere.
       const double scale = std::tan(0.5 * static_cast<double>(camera.verticalFov));
-      const glm::dvec3 local(scale * (2.0 * (x + 0.5) / settings.width - 1.0), scale * (1.0 - 2.0 * (y + 0.5) / settings.height), -1.0);
+      const glm::dvec3 local(scale * (2.0 * (x + 0.5) / settings.width - 1.0), scale * (1.0 - 2.0 * (y + 0.5) / settings.height),
+                             -1.0);
       const glm::dvec3 d = glm::normalize(glm::dmat3(world) * local);
       const glm::dvec3 o(world[3]);
       const double b = glm::dot(o, d);
@@ -411,10 +421,11 @@ TEST(ReferencePicture, DoesNotDependOnTheNumberOfThreads) {
   for (const int threads : {2, 7}) {
     settings.threads = threads;
     double last = 0.0;
-    const ReferenceImage many = renderReference(scene, environment, scene.cameras[0], settings, [&](const std::string&, double done) {
-      EXPECT_GT(done, last);
-      last = done;
-    });
+    const ReferenceImage many =
+        renderReference(scene, environment, scene.cameras[0], settings, [&](const std::string&, double done) {
+          EXPECT_GT(done, last);
+          last = done;
+        });
     EXPECT_EQ(last, 1.0);
     EXPECT_EQ(one.radiance.texels, many.radiance.texels);
     EXPECT_EQ(one.varianceOfMean.texels, many.varianceOfMean.texels);
@@ -434,7 +445,8 @@ TEST(ReferencePicture, DoesNotDependOnTheSizeOfTheScene) {
   settings.samplesPerPixel = 16;
   const ReferenceImage expected = renderReference(original, environment, original.cameras[0], settings);
   double mean = 0.0;
-  for (const glm::vec4& texel : expected.radiance.texels) mean += static_cast<double>(texel.y) / static_cast<double>(expected.radiance.texels.size());
+  for (const glm::vec4& texel : expected.radiance.texels)
+    mean += static_cast<double>(texel.y) / static_cast<double>(expected.radiance.texels.size());
   for (const float scale : {1e-3f, 1e4f}) {
     Scene scene = original;
     for (Primitive& primitive : scene.primitives) {
@@ -449,7 +461,8 @@ TEST(ReferencePicture, DoesNotDependOnTheSizeOfTheScene) {
     double squared = 0.0;
     int different = 0;
     for (std::size_t i = 0; i < image.radiance.texels.size(); ++i) {
-      const double difference = static_cast<double>(image.radiance.texels[i].y) - static_cast<double>(expected.radiance.texels[i].y);
+      const double difference =
+          static_cast<double>(image.radiance.texels[i].y) - static_cast<double>(expected.radiance.texels[i].y);
       squared += difference * difference;
       if (!(std::abs(difference) <= 1e-3 * mean)) ++different;
     }
@@ -514,7 +527,8 @@ TEST(ReferencePicture, BlendedSurfacesLieOverWhatIsBehind) {
   EXPECT_LE(glm::length(pixel(over) - glm::dvec3(0.5, 2.25, 0.0)), 1e-6);
   EXPECT_EQ(over.radiance.at(0, 0).a, 1.0f);
   // From behind the opaque one hides it.
-  EXPECT_LE(glm::length(pixel(renderReference(scene, black, cameraAt({0, 0, -3}), onePixel())) - glm::dvec3(0.0, 3.0, 0.0)), 1e-6);
+  EXPECT_LE(glm::length(pixel(renderReference(scene, black, cameraAt({0, 0, -3}), onePixel())) - glm::dvec3(0.0, 3.0, 0.0)),
+            1e-6);
   // Alone it lets the background through.
   scene.primitives.erase(scene.primitives.begin());
   scene.materials[1].metallicFactor = 1.0f;
@@ -552,7 +566,8 @@ TEST(ReferencePicture, AnOrthographicCameraSeesItsExtent) {
   settings.background = false;
   const ReferenceImage image = renderReference(scene, whiteEnvironment(), camera, settings);
   for (int y = 0; y < 8; ++y) {
-    for (int x = 0; x < 16; ++x) EXPECT_EQ(image.radiance.at(x, y).a, x >= 6 && x < 10 && y >= 2 && y < 6 ? 1.0f : 0.0f) << x << "," << y;
+    for (int x = 0; x < 16; ++x)
+      EXPECT_EQ(image.radiance.at(x, y).a, x >= 6 && x < 10 && y >= 2 && y < 6 ? 1.0f : 0.0f) << x << "," << y;
   }
 }
 
