@@ -39,6 +39,15 @@ bool hasJpegEnd(std::span<const std::uint8_t> bytes) {
   return std::search(bytes.begin(), bytes.end(), std::begin(kEnd), std::end(kEnd)) != bytes.end();
 }
 
+/// PNG sizes come first in the file; stb refuses large ones with a message of its own.
+void requirePngSize(std::span<const std::uint8_t> bytes, const std::string& where) {
+  if (bytes.size() < 24) throw inputError(where, "the PNG image is truncated", "save it again");
+  const auto word = [&](std::size_t at) {
+    return std::int64_t{bytes[at]} << 24 | std::int64_t{bytes[at + 1]} << 16 | std::int64_t{bytes[at + 2]} << 8 | std::int64_t{bytes[at + 3]};
+  };
+  requireImageSize(word(16), word(20), where);
+}
+
 int lengthOf(std::span<const std::uint8_t> bytes, const std::string& where) {
   if (bytes.size() > static_cast<std::size_t>(std::numeric_limits<int>::max())) throw inputError(where, "is larger than 2 GiB", "use a smaller image");
   return static_cast<int>(bytes.size());
@@ -48,6 +57,7 @@ int lengthOf(std::span<const std::uint8_t> bytes, const std::string& where) {
 
 glm::ivec2 decodedSize(std::span<const std::uint8_t> bytes, const std::string& where) {
   if (!isPng(bytes) && !isJpeg(bytes)) throw inputError(where, "is neither a PNG nor a JPEG image", "convert it to one of them");
+  if (isPng(bytes)) requirePngSize(bytes, where);
   int width = 0, height = 0, channels = 0;
   if (stbi_info_from_memory(bytes.data(), lengthOf(bytes, where), &width, &height, &channels) == 0)
     throw inputError(where, std::string("its image header cannot be read (") + stbi_failure_reason() + ")", "save it again");

@@ -169,8 +169,9 @@ class ObjCheck {
 
   int numberOf(const std::string& name) {
     const auto found = std::find(materialNames.begin(), materialNames.end(), name);
+    const auto number = static_cast<int>(found - materialNames.begin()) + 1;
     if (found == materialNames.end()) materialNames.push_back(name);
-    return static_cast<int>(found - materialNames.begin()) + 1;
+    return number;
   }
 
   std::string where_;

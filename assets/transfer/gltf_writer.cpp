@@ -33,7 +33,7 @@ Json list(const glm::vec<Size, float>& v) {
 Json list(const glm::mat4& m) {
   Json out = Json::array();
   for (int c = 0; c < 4; ++c)
-    for (int r = 0; r < 4; ++r) out.push_back(m[c][r]);
+    for (int r = 0; r < 4; ++r) out.push_back(m[c][r] + 0.0f);  // no -0: the product of transforms that a reader forms loses its sign
   return out;
 }
 
