@@ -44,7 +44,8 @@ std::vector<CasePictures> writePictures(const Comparisons& comparisons, const st
 void printSummary(const Comparisons& comparisons, const std::filesystem::path& page) {
   for (const Comparison& one : comparisons.cases)
     std::printf("%-28s %6.2f dB (%.2f without the reference's noise)   rmse %.4f   bias %+.4f   noise %.4f\n", one.name.c_str(),
-                one.difference.psnr, psnrOf(one.difference.rmseWithoutNoise), one.difference.rmse, one.difference.bias, one.difference.noise);
+                one.difference.psnr, psnrOf(one.difference.rmseWithoutNoise), one.difference.rmse, one.difference.bias,
+                one.difference.noise);
   std::printf("wrote %s\n", page.c_str());
 }
 
@@ -53,7 +54,8 @@ void judge(const Comparisons& comparisons, const ReportOptions& options) {
   for (const Comparison& one : comparisons.cases)
     if (one.difference.undefinedPixels > 0)
       throw Error(options.failUnder ? ExitCode::overTolerance : ExitCode::failed, one.name,
-                  std::to_string(one.difference.undefinedPixels) + " pixels are not finite", "look at its error map, they are magenta");
+                  std::to_string(one.difference.undefinedPixels) + " pixels are not finite",
+                  "look at its error map, they are magenta");
   if (!options.failUnder) return;
   for (const Comparison& one : comparisons.cases)
     if (!(one.difference.psnr >= *options.failUnder)) {

@@ -61,7 +61,8 @@ std::string fileName(const std::string& environment, std::optional<float> roughn
   return unique;
 }
 
-void drawRuntime(const BakedScene& baked, const PreparedLight& light, const Camera& camera, const ReportOptions& options, Comparison& comparison) {
+void drawRuntime(const BakedScene& baked, const PreparedLight& light, const Camera& camera, const ReportOptions& options,
+                 Comparison& comparison) {
   const double start = secondsNow();
   Renderer renderer(baked);
   renderer.setEnvironment(light.prefiltered);
@@ -77,8 +78,8 @@ void drawRuntime(const BakedScene& baked, const PreparedLight& light, const Came
 }
 
 /// Two references of half the samples each, so that the noise is known.
-ReferenceHalves drawReference(const Scene& scene, const Environment& environment, const Camera& camera, const ReportOptions& options,
-                              const ProgressHandler& progress, Comparison& comparison) {
+ReferenceHalves drawReference(const Scene& scene, const Environment& environment, const Camera& camera,
+                              const ReportOptions& options, const ProgressHandler& progress, Comparison& comparison) {
   const double start = secondsNow();
   ReferenceSettings settings;
   settings.width = options.size.x;
@@ -126,7 +127,8 @@ Comparisons compareAll(const BakedScene& baked, const ReportOptions& options, co
       const BakedScene changed = withMaterials(baked, roughness, options.metallic);
       drawRuntime(changed, light, result.camera, options, comparison);
       context.debugLog().requireClean("the rendering");
-      const ReferenceHalves halves = drawReference(changed.scene, light.environment, result.camera, options, progress, comparison);
+      const ReferenceHalves halves =
+          drawReference(changed.scene, light.environment, result.camera, options, progress, comparison);
       comparison.reference = meanOf(halves);
       comparison.difference = comparePictures(comparison.runtime, halves, comparison.display);
       result.cases.push_back(std::move(comparison));

@@ -19,18 +19,18 @@ struct Comparison {
   std::string environment;         ///< as the user gave it
   std::optional<float> roughness;  ///< absent: the scene's own
   DisplaySettings display;
-  std::size_t lightCount = 0;      ///< SG lights that the runtime found in the environment
-  ImageRgba runtime;               ///< linear radiance, alpha coverage; same pixel centres as `reference`
+  std::size_t lightCount = 0;  ///< SG lights that the runtime found in the environment
+  ImageRgba runtime;           ///< linear radiance, alpha coverage; same pixel centres as `reference`
   ImageRgba reference;
   PictureDifference difference;
   std::uint64_t rays = 0;
-  double prepareSeconds = 0.0;     ///< environment prefiltering
-  double runtimeSeconds = 0.0;     ///< upload and one frame, wall clock, until the pixels are back
+  double prepareSeconds = 0.0;  ///< environment prefiltering
+  double runtimeSeconds = 0.0;  ///< upload and one frame, wall clock, until the pixels are back
   double referenceSeconds = 0.0;
 };
 
 struct Comparisons {
-  std::vector<Comparison> cases;   ///< environments in the order given, roughnesses within
+  std::vector<Comparison> cases;  ///< environments in the order given, roughnesses within
   Camera camera;
   std::string glRenderer, glVersion;
 };

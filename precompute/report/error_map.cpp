@@ -25,7 +25,8 @@ Image8 errorMap(const ImageRgba& picture, const ImageRgba& reference, const Disp
   map.texels.reserve(4 * reference.texels.size());
   for (std::size_t i = 0; i < reference.texels.size(); ++i) {
     const glm::vec4 &ours = picture.texels[i], &truth = reference.texels[i];
-    const glm::vec3 error = displayColor(glm::vec3(ours), display.exposure, display.toneMap) - displayColor(glm::vec3(truth), display.exposure, display.toneMap);
+    const glm::vec3 error = displayColor(glm::vec3(ours), display.exposure, display.toneMap) -
+                            displayColor(glm::vec3(truth), display.exposure, display.toneMap);
     const double mean = (static_cast<double>(error.r) + static_cast<double>(error.g) + static_cast<double>(error.b)) / 3.0;
     const bool undefined = !std::isfinite(mean) || !std::isfinite(truth.a);
     const Color8 color = undefined ? kUndefined : truth.a > 0.5f ? colorOf(mean) : kNoObject;

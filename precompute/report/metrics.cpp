@@ -11,7 +11,9 @@ namespace {
 
 bool covered(const glm::vec4& texel) { return texel.a > 0.5f; }
 
-bool finite(const glm::vec4& texel) { return std::isfinite(texel.r) && std::isfinite(texel.g) && std::isfinite(texel.b) && std::isfinite(texel.a); }
+bool finite(const glm::vec4& texel) {
+  return std::isfinite(texel.r) && std::isfinite(texel.g) && std::isfinite(texel.b) && std::isfinite(texel.a);
+}
 
 glm::dvec3 displayed(const glm::vec3& radiance, const DisplaySettings& display) {
   return displayColor(radiance, display.exposure, display.toneMap);
@@ -31,7 +33,9 @@ class Mean {
     ++count_;
   }
   double value() const { return sum_ / static_cast<double>(count_); }
-  double standardError() const { return std::sqrt(std::max(0.0, squares_ / static_cast<double>(count_) - value() * value()) / static_cast<double>(count_)); }
+  double standardError() const {
+    return std::sqrt(std::max(0.0, squares_ / static_cast<double>(count_) - value() * value()) / static_cast<double>(count_));
+  }
 
  private:
   double sum_ = 0.0, squares_ = 0.0;
@@ -91,7 +95,8 @@ PictureDifference comparePictures(const ImageRgba& picture, const ReferenceHalve
   difference.rmseWithoutNoise = std::sqrt(std::max(withoutNoise.value(), 2.0 * withoutNoise.standardError()));
   if (difference.undefinedPixels > 0) {
     const double nan = std::numeric_limits<double>::quiet_NaN();
-    difference.rmse = difference.psnr = difference.meanAbsolute = difference.bias = difference.worst = difference.noise = difference.rmseWithoutNoise = nan;
+    difference.rmse = difference.psnr = difference.meanAbsolute = difference.bias = difference.worst = difference.noise =
+        difference.rmseWithoutNoise = nan;
   }
   return difference;
 }

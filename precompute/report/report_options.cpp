@@ -28,7 +28,8 @@ glm::ivec2 sizeFrom(const std::string& text) {
   const auto height = cross == std::string::npos ? std::nullopt : numberFrom<int>(std::string_view(text).substr(cross + 1));
   if (!width || !height) throw usageError("--size", "\"" + text + "\" is not a size", "give WIDTHxHEIGHT such as 480x300");
   if (*width < 1 || *height < 1 || *width > kLargestSide || *height > kLargestSide)
-    throw usageError("--size", "\"" + text + "\" is out of range", "each side must lie between 1 and " + std::to_string(kLargestSide));
+    throw usageError("--size", "\"" + text + "\" is out of range",
+                     "each side must lie between 1 and " + std::to_string(kLargestSide));
   return {*width, *height};
 }
 
@@ -54,11 +55,15 @@ void requireShare(float value, const char* option) {
 
 void declareReportOptions(CLI::App& app, ReportOptions& options, ReportOptionTexts& texts) {
   app.add_option("baked", texts.scene, "Baked scene (.glb) that chiaro-precompute wrote")->required()->type_name("FILE");
-  app.add_option("-o,--output", texts.output, "Folder for index.html, report.json, report.csv and the pictures")->required()->type_name("DIR");
-  app.add_option("-e,--environment", options.environments, "Light: " + builtinNames() + ", or an .hdr or .exr file. May be repeated. Default: sunny, overcast and windows")
+  app.add_option("-o,--output", texts.output, "Folder for index.html, report.json, report.csv and the pictures")
+      ->required()
+      ->type_name("DIR");
+  app.add_option("-e,--environment", options.environments,
+                 "Light: " + builtinNames() + ", or an .hdr or .exr file. May be repeated. Default: sunny, overcast and windows")
       ->type_name("NAME|FILE")
       ->allow_extra_args(false);
-  app.add_option("-r,--roughness", options.roughnesses, "Perceptual roughness of every material, 0 to 1. May be repeated: one comparison each")
+  app.add_option("-r,--roughness", options.roughnesses,
+                 "Perceptual roughness of every material, 0 to 1. May be repeated: one comparison each")
       ->type_name("R")
       ->allow_extra_args(false);
   app.add_option("--metallic", options.metallic, "Metalness of every material, 0 to 1")->type_name("M");
@@ -68,12 +73,18 @@ void declareReportOptions(CLI::App& app, ReportOptions& options, ReportOptionTex
                  "eye=X,Y,Z,target=X,Y,Z,fov-deg=D")
       ->type_name("SPEC")
       ->capture_default_str();
-  app.add_option("--samples", options.samples, "Sample pairs a pixel of the reference; its noise falls with their root")->type_name("N")->capture_default_str();
-  app.add_option("--exposure", texts.exposure, "Factor on radiance, or auto to suit each environment")->type_name("auto|FACTOR")->capture_default_str();
+  app.add_option("--samples", options.samples, "Sample pairs a pixel of the reference; its noise falls with their root")
+      ->type_name("N")
+      ->capture_default_str();
+  app.add_option("--exposure", texts.exposure, "Factor on radiance, or auto to suit each environment")
+      ->type_name("auto|FACTOR")
+      ->capture_default_str();
   app.add_option("--tone-map", texts.toneMap, "neutral, aces or clamp")->type_name("NAME")->capture_default_str();
   app.add_flag("--no-shadows", texts.noShadows, "Compare without shadows, to see the error of shading alone");
   app.add_option("--fail-under", options.failUnder, "Exit with 5 when a comparison is under this PSNR")->type_name("DB");
-  app.add_option("--threads", options.threads, "CPU threads, 0 is all; never changes the figures")->type_name("N")->capture_default_str();
+  app.add_option("--threads", options.threads, "CPU threads, 0 is all; never changes the figures")
+      ->type_name("N")
+      ->capture_default_str();
   app.add_flag("-q,--quiet", options.quiet, "Print nothing but errors");
 }
 
@@ -90,11 +101,14 @@ void finishReportOptions(ReportOptions& options, const ReportOptionTexts& texts)
   if (options.metallic) requireShare(*options.metallic, "--metallic");
   if (options.samples < 2 || options.samples > kMostSamples)
     throw usageError("--samples", "must lie between 2 and " + std::to_string(kMostSamples), "give a number such as 256");
-  if (options.failUnder && !std::isfinite(*options.failUnder)) throw usageError("--fail-under", "is not a number", "give decibels such as 30");
-  if (options.threads < 0 || options.threads > 1024) throw usageError("--threads", "must lie between 0 and 1024", "give 0 for all cores");
+  if (options.failUnder && !std::isfinite(*options.failUnder))
+    throw usageError("--fail-under", "is not a number", "give decibels such as 30");
+  if (options.threads < 0 || options.threads > 1024)
+    throw usageError("--threads", "must lie between 0 and 1024", "give 0 for all cores");
   std::error_code failure;
   std::filesystem::create_directories(options.output, failure);
-  if (failure) throw outputError(options.output.string(), "the folder cannot be made: " + failure.message(), "give another one with -o");
+  if (failure)
+    throw outputError(options.output.string(), "the folder cannot be made: " + failure.message(), "give another one with -o");
   requireWritable(options.output / "index.html");
 }
 

@@ -24,11 +24,11 @@ struct ReportOptions {
   std::optional<float> metallic;          ///< of every material, with or without `roughnesses`
   glm::ivec2 size{480, 300};              ///< pixels
   CameraSpec camera;
-  int samples = 128;                      ///< of the reference, light and BRDF sample pairs a pixel
-  std::optional<float> exposure;          ///< absent: autoExposure() of each environment
+  int samples = 128;              ///< of the reference, light and BRDF sample pairs a pixel
+  std::optional<float> exposure;  ///< absent: autoExposure() of each environment
   ToneMap toneMap = ToneMap::neutral;
   bool shadows = true;
-  std::optional<double> failUnder;        ///< dB
+  std::optional<double> failUnder;  ///< dB
   int threads = 0;
   bool quiet = false;
 };

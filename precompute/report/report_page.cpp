@@ -33,12 +33,14 @@ std::string formatted(const char* format, double value) {
 }
 
 std::string titleOf(const Comparison& one) {
-  return htmlText(one.environment) + (one.roughness ? ", roughness " + formatted("%.3g", static_cast<double>(*one.roughness)) : "");
+  return htmlText(one.environment) +
+         (one.roughness ? ", roughness " + formatted("%.3g", static_cast<double>(*one.roughness)) : "");
 }
 
 std::string picture(const std::vector<std::uint8_t>& png, const std::string& caption, const Comparison& one) {
-  return "<figure><img alt=\"" + caption + ", " + titleOf(one) + "\" width=\"" + std::to_string(one.reference.width) + "\" height=\"" +
-         std::to_string(one.reference.height) + "\" src=\"data:image/png;base64," + base64(png) + "\"><figcaption>" + caption + "</figcaption></figure>\n";
+  return "<figure><img alt=\"" + caption + ", " + titleOf(one) + "\" width=\"" + std::to_string(one.reference.width) +
+         "\" height=\"" + std::to_string(one.reference.height) + "\" src=\"data:image/png;base64," + base64(png) +
+         "\"><figcaption>" + caption + "</figcaption></figure>\n";
 }
 
 bool fails(const Comparison& one, const ReportOptions& options) {
@@ -52,7 +54,9 @@ std::string table(const ReportOptions& options, const Comparisons& comparisons) 
       "<th>reference noise</th><th>PSNR without noise</th><th>pixels</th><th>undefined</th><th>outline differs</th></tr>\n";
   for (const Comparison& one : comparisons.cases) {
     const PictureDifference& d = one.difference;
-    const auto cell = [&](const std::string& text, bool bad = false) { html += (bad ? "<td class=\"bad\">" : "<td>") + text + "</td>"; };
+    const auto cell = [&](const std::string& text, bool bad = false) {
+      html += (bad ? "<td class=\"bad\">" : "<td>") + text + "</td>";
+    };
     html += "<tr>";
     cell("<a href=\"#" + one.name + "\">" + titleOf(one) + "</a>");
     cell(formatted("%.2f", d.psnr), fails(one, options));
@@ -71,12 +75,16 @@ std::string table(const ReportOptions& options, const Comparisons& comparisons) 
 
 std::string settings(const ReportFacts& facts, const ReportOptions& options, const Comparisons& comparisons) {
   std::string html = "<h2>Settings</h2><dl>\n";
-  const auto entry = [&](const std::string& name, const std::string& text) { html += "<dt>" + name + "</dt><dd>" + htmlText(text) + "</dd>\n"; };
+  const auto entry = [&](const std::string& name, const std::string& text) {
+    html += "<dt>" + name + "</dt><dd>" + htmlText(text) + "</dd>\n";
+  };
   entry("scene", options.scene.filename().string());
   entry("mesh", std::to_string(facts.vertices) + " vertices, " + std::to_string(facts.triangles) + " triangles");
-  entry("transfer", std::to_string(facts.terms) + " terms, " + std::to_string(facts.directions) + " broad lobes, " + std::to_string(facts.resolution) + " texels a side, " +
-                        formatted("%.0f", facts.bytesPerVertex) + " bytes a vertex");
-  entry("pictures", std::to_string(options.size.x) + " x " + std::to_string(options.size.y) + ", one ray a pixel through its centre");
+  entry("transfer", std::to_string(facts.terms) + " terms, " + std::to_string(facts.directions) + " broad lobes, " +
+                        std::to_string(facts.resolution) + " texels a side, " + formatted("%.0f", facts.bytesPerVertex) +
+                        " bytes a vertex");
+  entry("pictures",
+        std::to_string(options.size.x) + " x " + std::to_string(options.size.y) + ", one ray a pixel through its centre");
   entry("reference", std::to_string(options.samples) + " sample pairs a pixel, in two halves");
   entry("shadows", options.shadows ? "yes" : "no");
   if (options.metallic) entry("metalness", formatted("%.3g", static_cast<double>(*options.metallic)));
@@ -94,36 +102,59 @@ std::string htmlText(const std::string& text) {
   std::string result;
   for (const char c : text) {
     switch (c) {
-      case '&': result += "&amp;"; break;
-      case '<': result += "&lt;"; break;
-      case '>': result += "&gt;"; break;
-      case '"': result += "&quot;"; break;
-      case '\'': result += "&#39;"; break;
-      default: result += c;
+      case '&':
+        result += "&amp;";
+        break;
+      case '<':
+        result += "&lt;";
+        break;
+      case '>':
+        result += "&gt;";
+        break;
+      case '"':
+        result += "&quot;";
+        break;
+      case '\'':
+        result += "&#39;";
+        break;
+      default:
+        result += c;
     }
   }
   return result;
 }
 
-std::string reportPage(const ReportFacts& facts, const ReportOptions& options, const Comparisons& comparisons, const std::vector<CasePictures>& pictures) {
+std::string reportPage(const ReportFacts& facts, const ReportOptions& options, const Comparisons& comparisons,
+                       const std::vector<CasePictures>& pictures) {
   const std::string scene = htmlText(options.scene.filename().string());
   const std::string range = formatted("%.2g", kErrorMapRange);
-  std::string html = "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">\n<title>" + scene +
-                     " against its reference</title><style>" + kStyle + "</style></head><body>\n";
+  std::string html =
+      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
+      "content=\"width=device-width,initial-scale=1\">\n<title>" +
+      scene + " against its reference</title><style>" + kStyle + "</style></head><body>\n";
   html += "<h1>" + scene + " against its reference</h1>\n";
   html +=
-      "<p>Each picture of the runtime beside a brute-force one of the same scene, camera, light and exposure: direct light, traced, no spherical "
-      "Gaussian and no baked transfer in it. Figures are of tone-mapped, display-encoded colours from 0 to 1, over the pixels that show an object. "
-      "The reference is drawn in two halves with independent noise; how they differ gives the noise, and the PSNR without it.</p>\n";
+      "<p>Each picture of the runtime beside a brute-force one of the same scene, camera, light and exposure: direct light, "
+      "traced, no spherical "
+      "Gaussian and no baked transfer in it. Figures are of tone-mapped, display-encoded colours from 0 to 1, over the pixels "
+      "that show an object. "
+      "The reference is drawn in two halves with independent noise; how they differ gives the noise, and the PSNR without "
+      "it.</p>\n";
   html += table(options, comparisons);
-  html += "<h2>Error maps</h2><p class=\"soft\">Runtime minus reference, mean of the channels. Black is equal, magenta undefined, grey no object.</p>\n";
-  html += "<div class=\"scale\"></div><div class=\"ends soft\"><span>&minus;" + range + " too dark</span><span>0</span><span>+" + range + " too bright</span></div>\n";
+  html +=
+      "<h2>Error maps</h2><p class=\"soft\">Runtime minus reference, mean of the channels. Black is equal, magenta undefined, "
+      "grey no object.</p>\n";
+  html += "<div class=\"scale\"></div><div class=\"ends soft\"><span>&minus;" + range + " too dark</span><span>0</span><span>+" +
+          range + " too bright</span></div>\n";
   for (std::size_t i = 0; i < comparisons.cases.size(); ++i) {
     const Comparison& one = comparisons.cases[i];
-    html += "<h2 id=\"" + one.name + "\">" + titleOf(one) + ": " + formatted("%.2f dB", one.difference.psnr) + "</h2>\n<div class=\"row\">\n";
-    html += picture(pictures[i].runtime, "runtime", one) + picture(pictures[i].reference, "reference", one) + picture(pictures[i].error, "error", one);
-    html += "</div>\n<p class=\"soft\">Prefiltering " + formatted("%.2f s", one.prepareSeconds) + ", runtime " + formatted("%.2f s", one.runtimeSeconds) +
-            " with upload, reference " + formatted("%.1f s", one.referenceSeconds) + " for " + formatted("%.1f", static_cast<double>(one.rays) * 1e-6) + " million rays.</p>\n";
+    html += "<h2 id=\"" + one.name + "\">" + titleOf(one) + ": " + formatted("%.2f dB", one.difference.psnr) +
+            "</h2>\n<div class=\"row\">\n";
+    html += picture(pictures[i].runtime, "runtime", one) + picture(pictures[i].reference, "reference", one) +
+            picture(pictures[i].error, "error", one);
+    html += "</div>\n<p class=\"soft\">Prefiltering " + formatted("%.2f s", one.prepareSeconds) + ", runtime " +
+            formatted("%.2f s", one.runtimeSeconds) + " with upload, reference " + formatted("%.1f s", one.referenceSeconds) +
+            " for " + formatted("%.1f", static_cast<double>(one.rays) * 1e-6) + " million rays.</p>\n";
   }
   return html + settings(facts, options, comparisons) + "</body></html>\n";
 }

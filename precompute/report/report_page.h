@@ -15,7 +15,8 @@ struct CasePictures {
 };
 
 /// `pictures` parallel to comparisons.cases. Pictures are inside as data; no script, no link to anywhere.
-std::string reportPage(const ReportFacts& facts, const ReportOptions& options, const Comparisons& comparisons, const std::vector<CasePictures>& pictures);
+std::string reportPage(const ReportFacts& facts, const ReportOptions& options, const Comparisons& comparisons,
+                       const std::vector<CasePictures>& pictures);
 
 /// &, <, > and quotes as entities.
 std::string htmlText(const std::string& text);

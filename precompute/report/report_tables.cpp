@@ -13,13 +13,18 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-Json number(std::optional<float> value) { return value ? Json(std::round(static_cast<double>(*value) * 1e6) / 1e6) : Json(nullptr); }
+Json number(std::optional<float> value) {
+  return value ? Json(std::round(static_cast<double>(*value) * 1e6) / 1e6) : Json(nullptr);
+}
 
 std::string toneMapName(ToneMap toneMap) {
   switch (toneMap) {
-    case ToneMap::neutral: return "neutral";
-    case ToneMap::aces: return "aces";
-    case ToneMap::clamp: return "clamp";
+    case ToneMap::neutral:
+      return "neutral";
+    case ToneMap::aces:
+      return "aces";
+    case ToneMap::clamp:
+      return "clamp";
   }
   return "?";
 }
@@ -44,8 +49,10 @@ Json caseJson(const Comparison& one) {
   json["exposure"] = number(static_cast<double>(one.display.exposure));
   json["environment_lights"] = one.lightCount;
   json["rays_traced"] = one.rays;
-  json["seconds"] = {{"prepare_environment", one.prepareSeconds}, {"runtime", one.runtimeSeconds}, {"reference", one.referenceSeconds}};
-  json["pictures"] = {{"runtime", one.name + "_runtime.png"}, {"reference", one.name + "_reference.png"}, {"error", one.name + "_error.png"}};
+  json["seconds"] = {
+      {"prepare_environment", one.prepareSeconds}, {"runtime", one.runtimeSeconds}, {"reference", one.referenceSeconds}};
+  json["pictures"] = {
+      {"runtime", one.name + "_runtime.png"}, {"reference", one.name + "_reference.png"}, {"error", one.name + "_error.png"}};
   return json;
 }
 
@@ -95,7 +102,9 @@ std::string reportJson(const ReportFacts& facts, const ReportOptions& options, c
   json["metallic"] = number(options.metallic);
   json["tone_map"] = facts.toneMap;
   json["camera"] = {{"name", comparisons.camera.name},
-                    {"eye", {comparisons.camera.worldFromCamera[3].x, comparisons.camera.worldFromCamera[3].y, comparisons.camera.worldFromCamera[3].z}}};
+                    {"eye",
+                     {comparisons.camera.worldFromCamera[3].x, comparisons.camera.worldFromCamera[3].y,
+                      comparisons.camera.worldFromCamera[3].z}}};
   json["gl"] = {{"renderer", comparisons.glRenderer}, {"version", comparisons.glVersion}};
   json["error_map_range"] = kErrorMapRange;
   json["lowest_psnr_db"] = number(lowestPsnr(comparisons));
@@ -108,7 +117,8 @@ std::string reportJson(const ReportFacts& facts, const ReportOptions& options, c
 std::string reportCsv(const Comparisons& comparisons) {
   std::ostringstream csv;
   csv << "name,environment,roughness,psnr_db,rmse,mean_absolute,bias,worst,object_pixels,undefined_pixels,coverage_mismatches,"
-         "rmse_without_noise,psnr_without_noise_db,reference_noise_rms,exposure,environment_lights,rays_traced,prepare_seconds,runtime_seconds,reference_seconds\n";
+         "rmse_without_noise,psnr_without_noise_db,reference_noise_rms,exposure,environment_lights,rays_traced,prepare_seconds,"
+         "runtime_seconds,reference_seconds\n";
   csv.precision(9);
   const auto figure = [&](double value) {
     csv << ',';
@@ -120,7 +130,9 @@ std::string reportCsv(const Comparisons& comparisons) {
     if (one.roughness) csv << *one.roughness;
     for (const double value : {d.psnr, d.rmse, d.meanAbsolute, d.bias, d.worst}) figure(value);
     csv << ',' << d.objectPixels << ',' << d.undefinedPixels << ',' << d.coverageMismatches;
-    for (const double value : {d.rmseWithoutNoise, psnrOf(d.rmseWithoutNoise), d.noise, static_cast<double>(one.display.exposure)}) figure(value);
+    for (const double value :
+         {d.rmseWithoutNoise, psnrOf(d.rmseWithoutNoise), d.noise, static_cast<double>(one.display.exposure)})
+      figure(value);
     csv << ',' << one.lightCount << ',' << one.rays;
     for (const double value : {one.prepareSeconds, one.runtimeSeconds, one.referenceSeconds}) figure(value);
     csv << '\n';

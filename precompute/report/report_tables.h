@@ -8,8 +8,8 @@
 namespace chiaro {
 
 struct ReportFacts {
-  std::string version;      ///< of chiaro-report
-  std::string toneMap;      ///< its name
+  std::string version;  ///< of chiaro-report
+  std::string toneMap;  ///< its name
   std::size_t vertices = 0;
   std::size_t triangles = 0;
   int resolution = 0, terms = 0, directions = 0;

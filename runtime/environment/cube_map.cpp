@@ -6,14 +6,18 @@
 namespace chiaro {
 namespace {
 
-float texelCentre(int index, int faceResolution) { return (2.0f * static_cast<float>(index) + 1.0f) / static_cast<float>(faceResolution) - 1.0f; }
+float texelCentre(int index, int faceResolution) {
+  return (2.0f * static_cast<float>(index) + 1.0f) / static_cast<float>(faceResolution) - 1.0f;
+}
 
 int texelIndex(float coordinate, int faceResolution) {
   return std::clamp(static_cast<int>((coordinate + 1.0f) * 0.5f * static_cast<float>(faceResolution)), 0, faceResolution - 1);
 }
 
 std::size_t texelOffset(int face, int column, int row, int faceResolution) {
-  return (static_cast<std::size_t>(face) * static_cast<std::size_t>(faceResolution) + static_cast<std::size_t>(row)) * static_cast<std::size_t>(faceResolution) + static_cast<std::size_t>(column);
+  return (static_cast<std::size_t>(face) * static_cast<std::size_t>(faceResolution) + static_cast<std::size_t>(row)) *
+             static_cast<std::size_t>(faceResolution) +
+         static_cast<std::size_t>(column);
 }
 
 /// A texel at most one step over one edge. Its centre on the extended face plane projects into the neighbour's border
@@ -21,7 +25,8 @@ std::size_t texelOffset(int face, int column, int row, int faceResolution) {
 std::size_t wrappedOffset(int face, int column, int row, int faceResolution) {
   const auto inside = [&](int i) { return i >= 0 && i < faceResolution; };
   if (inside(column) && inside(row)) return texelOffset(face, column, row, faceResolution);
-  const CubeCoordinates over = cubeCoordinates(cubeDirection({face, texelCentre(column, faceResolution), texelCentre(row, faceResolution)}));
+  const CubeCoordinates over =
+      cubeCoordinates(cubeDirection({face, texelCentre(column, faceResolution), texelCentre(row, faceResolution)}));
   return texelOffset(over.face, texelIndex(over.s, faceResolution), texelIndex(over.t, faceResolution), faceResolution);
 }
 
@@ -29,18 +34,25 @@ std::size_t wrappedOffset(int face, int column, int row, int faceResolution) {
 
 glm::vec3 cubeDirection(const CubeCoordinates& c) {
   switch (c.face) {
-    case 0: return {1, -c.t, -c.s};
-    case 1: return {-1, -c.t, c.s};
-    case 2: return {c.s, 1, c.t};
-    case 3: return {c.s, -1, -c.t};
-    case 4: return {c.s, -c.t, 1};
-    default: return {-c.s, -c.t, -1};
+    case 0:
+      return {1, -c.t, -c.s};
+    case 1:
+      return {-1, -c.t, c.s};
+    case 2:
+      return {c.s, 1, c.t};
+    case 3:
+      return {c.s, -1, -c.t};
+    case 4:
+      return {c.s, -c.t, 1};
+    default:
+      return {-c.s, -c.t, -1};
   }
 }
 
 CubeCoordinates cubeCoordinates(glm::vec3 d) {
   const glm::vec3 a = glm::abs(d);
-  if (a.x >= a.y && a.x >= a.z) return d.x >= 0 ? CubeCoordinates{0, -d.z / a.x, -d.y / a.x} : CubeCoordinates{1, d.z / a.x, -d.y / a.x};
+  if (a.x >= a.y && a.x >= a.z)
+    return d.x >= 0 ? CubeCoordinates{0, -d.z / a.x, -d.y / a.x} : CubeCoordinates{1, d.z / a.x, -d.y / a.x};
   if (a.y >= a.z) return d.y >= 0 ? CubeCoordinates{2, d.x / a.y, d.z / a.y} : CubeCoordinates{3, d.x / a.y, -d.z / a.y};
   return d.z >= 0 ? CubeCoordinates{4, d.x / a.z, -d.y / a.z} : CubeCoordinates{5, -d.x / a.z, -d.y / a.z};
 }

@@ -14,17 +14,22 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 constexpr double kEnvelopeSharpness = 8.0;
 constexpr int kEnvelopeClips = 4;
-constexpr double kContrast = 1.5;           ///< times the envelope: less is the unevenness of a sky or a wall, not a light
-constexpr int kFinestWidth = 2048;         ///< of the blocks: larger images start with several texels a block, to bound memory
+constexpr double kContrast = 1.5;   ///< times the envelope: less is the unevenness of a sky or a wall, not a light
+constexpr int kFinestWidth = 2048;  ///< of the blocks: larger images start with several texels a block, to bound memory
 constexpr int kCoarsestWidth = 128;
 constexpr double kSplitFlux = 1e-4;        ///< a block with a larger share of the excess is looked at in more detail
 constexpr double kLeastLightShare = 2e-3;  ///< of the environment's flux
 constexpr int kSeedsPerLight = 4;
-constexpr double kTwinLoss = 1e-3;         ///< lobes whose joining costs less likelihood a flux are one light
+/// Two lights that differ only at a finer scale than this sharpness cast the same shadow as one: a baked visibility of some
+/// degrees a texel cannot tell them apart. Lobes are compared after a blur by it.
+constexpr double kShadowSharpness = 500.0;
+constexpr double kTwinLoss = 0.03;  ///< likelihood a flux (nats) under which two lobes are one light
 
 double luminance(const glm::dvec3& c) { return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z; }
 
-glm::dvec3 directionOf(double x, double y, const ImageRgb& map) { return lobe64::directionFromEquirect({x / map.width, y / map.height}); }
+glm::dvec3 directionOf(double x, double y, const ImageRgb& map) {
+  return lobe64::directionFromEquirect({x / map.width, y / map.height});
+}
 
 double rowSolidAngle(int y, const ImageRgb& map) {
   return 2 * kPi / map.width * (std::cos(kPi * y / map.height) - std::cos(kPi * (y + 1) / map.height));
@@ -45,7 +50,8 @@ CoarseMap coarseLuminance(const ImageRgb& map) {
   const int stepsY = std::max(1, (CoarseMap::kHeight + map.height - 1) / map.height);
   for (int y = 0; y < map.height * stepsY; ++y)
     for (int x = 0; x < map.width * stepsX; ++x) {
-      const auto to = static_cast<std::size_t>(y * CoarseMap::kHeight / (map.height * stepsY) * CoarseMap::kWidth + x * CoarseMap::kWidth / (map.width * stepsX));
+      const auto to = static_cast<std::size_t>(y * CoarseMap::kHeight / (map.height * stepsY) * CoarseMap::kWidth +
+                                               x * CoarseMap::kWidth / (map.width * stepsX));
       const double weight = rowSolidAngle(y / stepsY, map);
       mean.values[to] += weight * luminance(map.at(x / stepsX, y / stepsY));
       weights[to] += weight;
@@ -107,7 +113,8 @@ double bilinear(const CoarseMap& map, double u, double v) {
   const int x0 = static_cast<int>(std::floor(x)), y0 = std::min(static_cast<int>(y), CoarseMap::kHeight - 2);
   const double fx = x - x0, fy = y - y0;
   const int left = (x0 + CoarseMap::kWidth) % CoarseMap::kWidth, right = (x0 + 1) % CoarseMap::kWidth;
-  return (1 - fy) * ((1 - fx) * map.at(left, y0) + fx * map.at(right, y0)) + fy * ((1 - fx) * map.at(left, y0 + 1) + fx * map.at(right, y0 + 1));
+  return (1 - fy) * ((1 - fx) * map.at(left, y0) + fx * map.at(right, y0)) +
+         fy * ((1 - fx) * map.at(left, y0 + 1) + fx * map.at(right, y0 + 1));
 }
 
 void add(ExcessPoint& sum, const ExcessPoint& point) {
@@ -125,7 +132,8 @@ struct BlockLevel {
 std::vector<BlockLevel> blockPyramid(const ImageRgb& environment) {
   const CoarseMap envelope = lowerEnvelope(environment);
   const int texelsABlock = std::max(1, (environment.width + kFinestWidth - 1) / kFinestWidth);
-  BlockLevel finest{(environment.width + texelsABlock - 1) / texelsABlock, (environment.height + texelsABlock - 1) / texelsABlock, {}};
+  BlockLevel finest{
+      (environment.width + texelsABlock - 1) / texelsABlock, (environment.height + texelsABlock - 1) / texelsABlock, {}};
   finest.blocks.resize(static_cast<std::size_t>(finest.width) * static_cast<std::size_t>(finest.height));
   for (int y = 0; y < environment.height; ++y) {
     const double solidAngle = rowSolidAngle(y, environment);
@@ -139,7 +147,8 @@ std::vector<BlockLevel> blockPyramid(const ImageRgb& environment) {
       const double excess = value - kContrast * bilinear(envelope, (x + 0.5) / environment.width, (y + 0.5) / environment.height);
       if (!(excess > 1e-6 * value)) continue;  // rounding of a constant is no light
       const double flux = excess * solidAngle;
-      add(finest.blocks[static_cast<std::size_t>(y / texelsABlock) * static_cast<std::size_t>(finest.width) + static_cast<std::size_t>(x / texelsABlock)],
+      add(finest.blocks[static_cast<std::size_t>(y / texelsABlock) * static_cast<std::size_t>(finest.width) +
+                        static_cast<std::size_t>(x / texelsABlock)],
           {flux * ownCosine * directionOf(x + 0.5, y + 0.5, environment), flux, radiance * (flux / value)});
     }
   }
@@ -150,17 +159,20 @@ std::vector<BlockLevel> blockPyramid(const ImageRgb& environment) {
     coarse.blocks.resize(static_cast<std::size_t>(coarse.width) * static_cast<std::size_t>(coarse.height));
     for (int y = 0; y < fine.height; ++y)
       for (int x = 0; x < fine.width; ++x)
-        add(coarse.blocks[static_cast<std::size_t>(y / 2) * static_cast<std::size_t>(coarse.width) + static_cast<std::size_t>(x / 2)],
+        add(coarse.blocks[static_cast<std::size_t>(y / 2) * static_cast<std::size_t>(coarse.width) +
+                          static_cast<std::size_t>(x / 2)],
             fine.blocks[static_cast<std::size_t>(y) * static_cast<std::size_t>(fine.width) + static_cast<std::size_t>(x)]);
     levels.push_back(std::move(coarse));
   }
   return levels;
 }
 
-void gather(const std::vector<BlockLevel>& levels, std::size_t level, int x, int y, double splitFlux, std::vector<ExcessPoint>& points) {
+void gather(const std::vector<BlockLevel>& levels, std::size_t level, int x, int y, double splitFlux,
+            std::vector<ExcessPoint>& points) {
   const BlockLevel& here = levels[level];
   if (x >= here.width || y >= here.height) return;
-  const ExcessPoint& block = here.blocks[static_cast<std::size_t>(y) * static_cast<std::size_t>(here.width) + static_cast<std::size_t>(x)];
+  const ExcessPoint& block =
+      here.blocks[static_cast<std::size_t>(y) * static_cast<std::size_t>(here.width) + static_cast<std::size_t>(x)];
   if (!(block.flux > 0.0)) return;
   if (level == 0 || block.flux <= splitFlux) {
     points.push_back(block);
@@ -186,11 +198,15 @@ Lobe lobeFromResultant(const glm::dvec3& resultant, double flux, double maxSharp
   return lobe;
 }
 
-/// Differential entropy of the unit-integral lobe.
-double entropy(const Lobe& lobe) { return -std::log(lobe64::vmfAmplitude(lobe.sharpness)) + lobe.sharpness * lobe64::oneMinusMeanCosine(lobe.sharpness); }
+/// Differential entropy of the unit-integral lobe, blurred to what matters for shadows.
+double entropy(const Lobe& lobe) {
+  const double sharpness = 1.0 / (1.0 / std::max(lobe.sharpness, 1e-6) + 1.0 / kShadowSharpness);
+  return -std::log(lobe64::vmfAmplitude(sharpness)) + sharpness * lobe64::oneMinusMeanCosine(sharpness);
+}
 
 Lobe merged(const Lobe& a, const Lobe& b, double maxSharpness) {
-  const glm::dvec3 resultant = a.flux * lobe64::vmfMeanCosine(a.sharpness) * a.axis + b.flux * lobe64::vmfMeanCosine(b.sharpness) * b.axis;
+  const glm::dvec3 resultant =
+      a.flux * lobe64::vmfMeanCosine(a.sharpness) * a.axis + b.flux * lobe64::vmfMeanCosine(b.sharpness) * b.axis;
   return lobeFromResultant(resultant, a.flux + b.flux, maxSharpness);
 }
 
@@ -280,15 +296,15 @@ class Mixture {
   }
 
   /// Joins the two lobes, or gives up the one, whose loss changes the mixture's likelihood least (Runnalls 2007, for vMF), if
-  /// that is less than `bound` times the flux. Only pairs with at least one lobe as sharp as a light are looked at.
+  /// that is less than `bound` times the flux they have. Only pairs with at least one lobe as sharp as a light are looked at.
   bool simplify(double minLightSharpness, double bound = std::numeric_limits<double>::infinity()) {
-    double least = bound * totalFlux_;
+    double least = std::numeric_limits<double>::infinity();
     bool found = false;
     std::size_t first = 0, second = 0;  // equal: give up that one
     for (std::size_t i = 0; i < lobes_.size(); ++i) {
       if (lobes_[i].sharpness >= minLightSharpness) {
         const double cost = lobes_[i].flux * (std::log(4 * kPi) - entropy(lobes_[i]));
-        if (cost < least) {
+        if (cost < least && cost < bound * lobes_[i].flux) {
           least = cost;
           first = second = i;
           found = true;
@@ -297,8 +313,9 @@ class Mixture {
       for (std::size_t j = i + 1; j < lobes_.size(); ++j) {
         if (lobes_[i].sharpness < minLightSharpness && lobes_[j].sharpness < minLightSharpness) continue;
         const Lobe joint = merged(lobes_[i], lobes_[j], maxSharpness_);
-        const double cost = joint.flux * entropy(joint) - lobes_[i].flux * entropy(lobes_[i]) - lobes_[j].flux * entropy(lobes_[j]);
-        if (cost < least) {
+        const double cost =
+            joint.flux * entropy(joint) - lobes_[i].flux * entropy(lobes_[i]) - lobes_[j].flux * entropy(lobes_[j]);
+        if (cost < least && cost < bound * joint.flux) {
           least = cost;
           first = i;
           second = j;
@@ -307,14 +324,17 @@ class Mixture {
       }
     }
     if (!found) return false;
-    if (first == second) background_ += lobes_[first].flux;
-    else lobes_[first] = merged(lobes_[first], lobes_[second], maxSharpness_);
+    if (first == second)
+      background_ += lobes_[first].flux;
+    else
+      lobes_[first] = merged(lobes_[first], lobes_[second], maxSharpness_);
     lobes_.erase(lobes_.begin() + static_cast<std::ptrdiff_t>(second));
     return true;
   }
 
   int lightCount(double minLightSharpness) const {
-    return static_cast<int>(std::count_if(lobes_.begin(), lobes_.end(), [&](const Lobe& lobe) { return lobe.sharpness >= minLightSharpness; }));
+    return static_cast<int>(
+        std::count_if(lobes_.begin(), lobes_.end(), [&](const Lobe& lobe) { return lobe.sharpness >= minLightSharpness; }));
   }
   const std::vector<Lobe>& lobes() const { return lobes_; }
 
@@ -346,7 +366,8 @@ std::vector<ExcessPoint> excessPoints(const ImageRgb& environment) {
 std::vector<SgLight> fitLights(const ImageRgb& environment, const SgEnvironmentSettings& settings) {
   double environmentFlux = 0.0;
   for (int y = 0; y < environment.height; ++y)
-    for (int x = 0; x < environment.width; ++x) environmentFlux += luminance(environment.at(x, y)) * rowSolidAngle(y, environment);
+    for (int x = 0; x < environment.width; ++x)
+      environmentFlux += luminance(environment.at(x, y)) * rowSolidAngle(y, environment);
   const std::vector<ExcessPoint> points = excessPoints(environment);
   double excessFlux = 0.0;
   for (const ExcessPoint& point : points) excessFlux += point.flux;
@@ -360,7 +381,8 @@ std::vector<SgLight> fitLights(const ImageRgb& environment, const SgEnvironmentS
     if (mixture.lightCount(settings.minLightSharpness) % 6 == 0) steps(mixture, 2);
   }
   steps(mixture, 20);
-  while (mixture.simplify(settings.minLightSharpness, kTwinLoss)) {}
+  while (mixture.simplify(settings.minLightSharpness, kTwinLoss)) {
+  }
   steps(mixture, 3);
 
   const std::vector<ExcessPoint> sums = mixture.assign();

@@ -11,9 +11,10 @@ namespace chiaro {
 
 /// What stands out from its surroundings at one place, as EM needs it: exact sums over the texels it stands for.
 struct ExcessPoint {
-  glm::dvec3 resultant{0.0};  ///< sum of luminance excess * direction * solid angle; shorter than `flux` by the place's own extent
-  double flux = 0.0;          ///< sum of luminance excess * solid angle
-  glm::dvec3 color{0.0};      ///< the same in RGB
+  glm::dvec3 resultant{
+      0.0};               ///< sum of luminance excess * direction * solid angle; shorter than `flux` by the place's own extent
+  double flux = 0.0;      ///< sum of luminance excess * solid angle
+  glm::dvec3 color{0.0};  ///< the same in RGB
 };
 
 /// Luminance above a smooth lower envelope (what is left of the environment when everything compact is clipped off, blurred by

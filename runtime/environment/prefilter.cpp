@@ -19,7 +19,8 @@ PrefilteredLevel resampleToCube(const SphereGrid& grid, float sharpness, int res
   parallelFor(6 * resolution, threads, [&](int line) {
     glm::vec3* texel = &level.texels[static_cast<std::size_t>(line) * static_cast<std::size_t>(resolution)];
     for (int column = 0; column < resolution; ++column) {
-      const glm::vec2 uv = lobe32::equirectFromDirection(cubeTexelDirection(line / resolution, column, line % resolution, resolution));
+      const glm::vec2 uv =
+          lobe32::equirectFromDirection(cubeTexelDirection(line / resolution, column, line % resolution, resolution));
       // The cut at the last band leaves a ripple of 1e-7 of the brightest value; radiance must not be negative for it.
       texel[column] = glm::max(grid.interpolate(uv.x, uv.y), glm::vec3(0.0f));
     }
@@ -37,7 +38,9 @@ PrefilteredLevel buildLevel(const SphereSpectrum& spectrum, float sharpness, int
 
 }  // namespace
 
-float finestSharpnessOf(int finestResolution) { return static_cast<float>(finestResolution) * static_cast<float>(finestResolution) / 32.0f; }
+float finestSharpnessOf(int finestResolution) {
+  return static_cast<float>(finestResolution) * static_cast<float>(finestResolution) / 32.0f;
+}
 
 int bandsOf(int finestResolution) { return static_cast<int>(sgBandFactors(finestSharpnessOf(finestResolution)).size()); }
 

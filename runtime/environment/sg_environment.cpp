@@ -15,15 +15,18 @@ namespace {
 
 void check(const Environment& environment, const SgEnvironmentSettings& settings) {
   const ImageRgb& map = environment.radiance;
-  if (map.width <= 0 || map.height <= 0 || map.texels.size() != static_cast<std::size_t>(map.width) * static_cast<std::size_t>(map.height))
-    throw inputError(environment.name, "the environment has no picture, or one whose size does not match", "give an equirectangular image");
+  if (map.width <= 0 || map.height <= 0 ||
+      map.texels.size() != static_cast<std::size_t>(map.width) * static_cast<std::size_t>(map.height))
+    throw inputError(environment.name, "the environment has no picture, or one whose size does not match",
+                     "give an equirectangular image");
   for (const glm::vec3& texel : map.texels)
     if (!(texel.x >= 0 && texel.y >= 0 && texel.z >= 0 && texel.x + texel.y + texel.z <= 3e30f))
       throw inputError(environment.name, "the environment has a negative, infinite or undefined radiance", "clean the image");
   const int resolution = settings.finestResolution;
   if (resolution < 16 || resolution > 1024 || (resolution & (resolution - 1)) != 0)
     throw usageError("finestResolution", std::to_string(resolution) + " is no power of two from 16 to 1024", "use 512");
-  if (!(settings.minLightSharpness > 0 && settings.minLightSharpness <= settings.maxLightSharpness && settings.maxLightSharpness <= 1e8f))
+  if (!(settings.minLightSharpness > 0 && settings.minLightSharpness <= settings.maxLightSharpness &&
+        settings.maxLightSharpness <= 1e8f))
     throw usageError("minLightSharpness", "the bounds of the light sharpness are not 0 < min <= max <= 1e8", "use 20 and 1e6");
 }
 

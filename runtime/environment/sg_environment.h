@@ -20,7 +20,7 @@ struct SgLight {
 struct PrefilteredLevel {
   float sharpness = 0.0f;
   int faceResolution = 0;
-  std::vector<glm::vec3> texels;   ///< 6 faces (+X -X +Y -Y +Z -Z, GL orientation) by faceResolution^2, row-major
+  std::vector<glm::vec3> texels;  ///< 6 faces (+X -X +Y -Y +Z -Z, GL orientation) by faceResolution^2, row-major
 };
 
 /// As two cube maps with mip chains, made for one GL cube-map array with two layers: mip m of layer 0 has sharpness
@@ -34,16 +34,16 @@ struct SgPyramid {
 };
 
 struct SgEnvironmentSettings {
-  int lightCount = 12;               ///< at most; fewer when the environment has fewer bright spots
-  float minLightSharpness = 20.0f;   ///< broader light stays in the residual
+  int lightCount = 12;              ///< at most; fewer when the environment has fewer bright spots
+  float minLightSharpness = 20.0f;  ///< broader light stays in the residual
   float maxLightSharpness = 1e6f;
-  int finestResolution = 512;        ///< power of two; the finest sharpness is finestResolution^2 / 32 (8192)
+  int finestResolution = 512;  ///< power of two; the finest sharpness is finestResolution^2 / 32 (8192)
   int threads = 0;
 };
 
 struct SgEnvironment {
-  ImageRgb radiance;                 ///< the equirectangular map itself: the background, and lobes sharper than the pyramid
-  std::vector<SgLight> lights;       ///< brightest first (by flux)
+  ImageRgb radiance;            ///< the equirectangular map itself: the background, and lobes sharper than the pyramid
+  std::vector<SgLight> lights;  ///< brightest first (by flux)
   /// Of the whole environment, lights included. A shader that treats the lights apart subtracts their exact convolution
   /// (ALGORITHMS 1.4) where it needs the rest alone.
   SgPyramid pyramid;

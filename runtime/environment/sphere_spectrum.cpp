@@ -139,12 +139,14 @@ void azimuthalSpectrum(const ImageRgb& map, int y, int bandCount, Eigen::FFT<dou
   result.resize(bandCount, 6);
   for (int channel = 0; channel < 3; ++channel) {
     for (int x = 0; x < width; ++x) signal[static_cast<std::size_t>(x)] = map.at(x, y)[channel];
-    if (width == 1) spectrum = signal;  // too short for the library's transform
-    else fft.fwd(spectrum, signal);
+    if (width == 1)
+      spectrum = signal;  // too short for the library's transform
+    else
+      fft.fwd(spectrum, signal);
     for (int m = 0; m < bandCount; ++m) {
       const double halfStep = kPi * m / width;  // half a texel in radians, times m
       const double sinc = m == 0 ? 1.0 : std::sin(halfStep) / halfStep;
-      const double tent = sinc * sinc;          // linear interpolation between texel centres
+      const double tent = sinc * sinc;  // linear interpolation between texel centres
       const std::complex<double> value =
           spectrum[static_cast<std::size_t>(m % width)] * std::polar(2 * kPi / width * tent, -halfStep);
       result(m, channel) = value.real();
@@ -153,8 +155,8 @@ void azimuthalSpectrum(const ImageRgb& map, int y, int bandCount, Eigen::FFT<dou
   }
 }
 
-void analyseOrder(int m, const NorthernRows& north, const RowMatrix& symmetric, const RowMatrix& antisymmetric,
-                  int bandCount, Columns6& coefficients) {
+void analyseOrder(int m, const NorthernRows& north, const RowMatrix& symmetric, const RowMatrix& antisymmetric, int bandCount,
+                  Columns6& coefficients) {
   coefficients.setZero(bandCount - m, 6);
   LegendreWalk walk(north, m, bandCount);
   if (walk.activeRows() == 0) return;
@@ -185,8 +187,10 @@ void synthesiseOrder(int m, const SphereSpectrum& spectrum, const std::vector<do
     Columns6 evenBands((count + 1) / 2, 6), oddBands(count / 2, 6);
     for (int k = 0; k < count; ++k) {
       const double factor = bandFactors[static_cast<std::size_t>(m + start + k)];
-      if (k & 1) oddBands.row(k / 2) = factor * coefficients.row(start + k);
-      else evenBands.row(k / 2) = factor * coefficients.row(start + k);
+      if (k & 1)
+        oddBands.row(k / 2) = factor * coefficients.row(start + k);
+      else
+        evenBands.row(k / 2) = factor * coefficients.row(start + k);
     }
     even.noalias() += walk.even(count) * evenBands;
     odd.noalias() += walk.odd(count) * oddBands;
@@ -256,7 +260,8 @@ SphereSpectrum analyse(const ImageRgb& map, int bandCount, int threads) {
 }
 
 SphereGrid::SphereGrid(int height)
-    : width_(2 * height), height_(height),
+    : width_(2 * height),
+      height_(height),
       values_(3 * static_cast<std::size_t>(2 * height + 2 * kBorder) * static_cast<std::size_t>(height + 2 * kBorder)) {}
 
 void SphereGrid::closeBorder() {
@@ -304,9 +309,8 @@ SphereGrid synthesise(const SphereSpectrum& spectrum, const std::vector<double>&
   const int bandCount = std::min(spectrum.bandCount, static_cast<int>(bandFactors.size()));
   const NorthernRows north(height);
   std::vector<Columns6> orders(static_cast<std::size_t>(bandCount));
-  parallelFor(bandCount, threads, [&](int m) {
-    synthesiseOrder(m, spectrum, bandFactors, north, bandCount, orders[static_cast<std::size_t>(m)]);
-  });
+  parallelFor(bandCount, threads,
+              [&](int m) { synthesiseOrder(m, spectrum, bandFactors, north, bandCount, orders[static_cast<std::size_t>(m)]); });
 
   SphereGrid grid(height);
   const int width = grid.width();
@@ -324,7 +328,8 @@ SphereGrid synthesise(const SphereSpectrum& spectrum, const std::vector<double>&
         std::fill(half.begin(), half.end(), std::complex<double>{});
         for (int m = 0; m < bandCount; ++m) {
           const Columns6& order = orders[static_cast<std::size_t>(m)];
-          half[static_cast<std::size_t>(m)] = std::complex<double>(order(j, channel), order(j, channel + 3)) * phases[static_cast<std::size_t>(m)];
+          half[static_cast<std::size_t>(m)] =
+              std::complex<double>(order(j, channel), order(j, channel + 3)) * phases[static_cast<std::size_t>(m)];
         }
         fft.inv(signal.data(), half.data(), width);
         for (int i = 0; i < width; ++i) grid.texel(i, j)[channel] = static_cast<float>(signal[static_cast<std::size_t>(i)]);

@@ -43,7 +43,8 @@ class SphereGrid {
  private:
   static constexpr int kBorder = 2;
   std::size_t offset(int i, int j) const {
-    return 3 * (static_cast<std::size_t>(j + kBorder) * static_cast<std::size_t>(width_ + 2 * kBorder) + static_cast<std::size_t>(i + kBorder));
+    return 3 * (static_cast<std::size_t>(j + kBorder) * static_cast<std::size_t>(width_ + 2 * kBorder) +
+                static_cast<std::size_t>(i + kBorder));
   }
   int width_;
   int height_;

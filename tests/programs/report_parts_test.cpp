@@ -46,7 +46,7 @@ TEST(Metrics, EqualPicturesAreEqual) {
 TEST(Metrics, KnownDifferenceOnObjectPixelsAlone) {
   ImageRgba reference = flat(2, 2, {0.2f, 0.2f, 0.2f, 1.0f}), picture = reference;
   picture.texels[0] = {0.3f, 0.2f, 0.2f, 1.0f};  // one channel of one pixel
-  reference.texels[3].a = 0.0f;                   // background: however different, it does not count
+  reference.texels[3].a = 0.0f;                  // background: however different, it does not count
   picture.texels[3] = {9.0f, 9.0f, 9.0f, 0.0f};
   const PictureDifference d = comparePictures(picture, noiseless(reference), kPlain);
   const double error = srgb(0.3) - srgb(0.2);
@@ -70,9 +70,12 @@ TEST(Metrics, OneUndefinedPixelSpoilsEveryFigure) {
   for (const float bad : {nan, inf, -inf}) {
     ImageRgba spoilt = good;
     spoilt.texels[1].g = bad;
-    for (const PictureDifference& d : {comparePictures(spoilt, noiseless(good), kPlain), comparePictures(good, noiseless(spoilt), kPlain)}) {
+    for (const PictureDifference& d :
+         {comparePictures(spoilt, noiseless(good), kPlain), comparePictures(good, noiseless(spoilt), kPlain)}) {
       EXPECT_EQ(d.undefinedPixels, 1u);
-      for (const double figure : {d.rmse, d.psnr, d.bias, d.meanAbsolute, d.worst, d.rmseWithoutNoise, psnrOf(d.rmseWithoutNoise)}) EXPECT_TRUE(std::isnan(figure));
+      for (const double figure :
+           {d.rmse, d.psnr, d.bias, d.meanAbsolute, d.worst, d.rmseWithoutNoise, psnrOf(d.rmseWithoutNoise)})
+        EXPECT_TRUE(std::isnan(figure));
     }
   }
 }
@@ -128,7 +131,9 @@ TEST(ErrorMap, ColoursSayWhichWay) {
   picture.texels[3].g = std::numeric_limits<float>::quiet_NaN();
   reference.texels[4].a = 0.0f;
   const Image8 map = errorMap(picture, reference, kPlain);
-  const auto texel = [&](std::size_t i) { return std::vector<int>{map.texels[4 * i], map.texels[4 * i + 1], map.texels[4 * i + 2], map.texels[4 * i + 3]}; };
+  const auto texel = [&](std::size_t i) {
+    return std::vector<int>{map.texels[4 * i], map.texels[4 * i + 1], map.texels[4 * i + 2], map.texels[4 * i + 3]};
+  };
   EXPECT_EQ(texel(0), (std::vector<int>{0, 0, 0, 255}));
   EXPECT_EQ(texel(1), (std::vector<int>{255, 255, 0, 255}));
   EXPECT_EQ(texel(2), (std::vector<int>{0, 255, 255, 255}));
@@ -175,7 +180,8 @@ TEST(Page, EscapesNamesAndNeedsNothingElse) {
 TEST(Tables, UndefinedFiguresAreNullAndEmpty) {
   Comparisons comparisons = oneCase("sunny, \"late\"");
   comparisons.cases[0].runtime.texels[0].r = std::numeric_limits<float>::quiet_NaN();
-  comparisons.cases[0].difference = comparePictures(comparisons.cases[0].runtime, noiseless(comparisons.cases[0].reference), kPlain);
+  comparisons.cases[0].difference =
+      comparePictures(comparisons.cases[0].runtime, noiseless(comparisons.cases[0].reference), kPlain);
   const auto json = nlohmann::json::parse(reportJson({}, {}, comparisons));
   EXPECT_TRUE(json["lowest_psnr_db"].is_null());
   EXPECT_TRUE(json["cases"][0]["psnr_db"].is_null());

@@ -120,7 +120,8 @@ TEST_F(ReportPictures, WritesEverythingItSays) {
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 5);
   const std::string page = textOf("full/index.html");
   std::size_t pictures = 0;
-  for (std::size_t at = page.find("data:image/png"); at != std::string::npos; at = page.find("data:image/png", at + 1)) ++pictures;
+  for (std::size_t at = page.find("data:image/png"); at != std::string::npos; at = page.find("data:image/png", at + 1))
+    ++pictures;
   EXPECT_EQ(pictures, 12u);
 }
 

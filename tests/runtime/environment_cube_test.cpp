@@ -44,7 +44,8 @@ TEST(CubeMap, SolidAnglesCoverTheSphere) {
 std::vector<glm::vec3> randomCube(int resolution) {
   std::mt19937 random(3);
   std::vector<glm::vec3> texels(static_cast<std::size_t>(6 * resolution * resolution));
-  for (glm::vec3& texel : texels) texel = glm::vec3(static_cast<float>(random() % 1000), static_cast<float>(random() % 1000), 1.0f);
+  for (glm::vec3& texel : texels)
+    texel = glm::vec3(static_cast<float>(random() % 1000), static_cast<float>(random() % 1000), 1.0f);
   return texels;
 }
 
@@ -90,9 +91,9 @@ TEST(CubeMap, NoSeamAtEdgesAndCorners) {
 TEST(CubeMap, EdgeIsTheMeanOfItsTwoTexels) {
   constexpr int kResolution = 4;
   std::vector<glm::vec3> texels(6 * kResolution * kResolution, glm::vec3(0.0f));
-  texels[0 * 16 + 1 * 4 + 0] = glm::vec3(1.0f);   // +X, column 0 (towards +Z), row 1
-  texels[4 * 16 + 1 * 4 + 3] = glm::vec3(3.0f);   // +Z, column 3 (towards +X), row 1
-  const glm::vec3 edge(1.0f, 0.25f, 1.0f);        // t = -0.25: the centre of row 1
+  texels[0 * 16 + 1 * 4 + 0] = glm::vec3(1.0f);  // +X, column 0 (towards +Z), row 1
+  texels[4 * 16 + 1 * 4 + 3] = glm::vec3(3.0f);  // +Z, column 3 (towards +X), row 1
+  const glm::vec3 edge(1.0f, 0.25f, 1.0f);       // t = -0.25: the centre of row 1
   EXPECT_NEAR(sampleCube(texels, kResolution, edge).x, 2.0f, 1e-5f);
 }
 

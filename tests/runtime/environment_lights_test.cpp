@@ -16,7 +16,9 @@ namespace {
 using namespace test;
 constexpr double kPi = std::numbers::pi;
 
-double angleBetween(const glm::dvec3& a, const glm::dvec3& b) { return 2 * std::asin(std::min(1.0, 0.5 * glm::length(glm::normalize(a) - glm::normalize(b)))); }
+double angleBetween(const glm::dvec3& a, const glm::dvec3& b) {
+  return 2 * std::asin(std::min(1.0, 0.5 * glm::length(glm::normalize(a) - glm::normalize(b))));
+}
 
 /// Lights within `radius` of the axis, as one: flux and mean axis.
 SgLight together(const std::vector<SgLight>& lights, const glm::dvec3& axis, double radius, glm::dvec3& flux) {
@@ -60,9 +62,11 @@ TEST(Lights, SunSharpnessIsThatOfTheDisc) {
 }
 
 TEST(Lights, NoneInASmoothSky) {
-  const Environment gradient = makeEnvironment(256, 128, 1, [](const glm::dvec3& w) { return glm::dvec3(0.4, 0.5, 0.8) * (1.0 + 0.6 * w.y); });
+  const Environment gradient =
+      makeEnvironment(256, 128, 1, [](const glm::dvec3& w) { return glm::dvec3(0.4, 0.5, 0.8) * (1.0 + 0.6 * w.y); });
   EXPECT_TRUE(fitLights(gradient.radiance, {}).empty());
-  const Environment overcast = makeEnvironment(256, 128, 1, [](const glm::dvec3& w) { return glm::dvec3((1.0 + 2.0 * std::max(w.y, 0.0)) / 3.0); });
+  const Environment overcast =
+      makeEnvironment(256, 128, 1, [](const glm::dvec3& w) { return glm::dvec3((1.0 + 2.0 * std::max(w.y, 0.0)) / 3.0); });
   const std::vector<SgLight> lights = fitLights(overcast.radiance, {});
   EXPECT_TRUE(lights.empty());
 }
@@ -104,7 +108,8 @@ TEST(Lights, WindowsBecomeLights) {
   // Colour goes along: the windows have 10 % less blue.
   EXPECT_NEAR(lights[0].amplitude.z / lights[0].amplitude.x, 0.9f, 0.01f);
   const double coarse = explainedShare(room, lights, 128.0), fine = explainedShare(room, lights, 512.0);
-  std::printf("windows: %zu lights explain %.3f of the fine structure at sharpness 128, %.3f at 512\n", lights.size(), coarse, fine);
+  std::printf("windows: %zu lights explain %.3f of the fine structure at sharpness 128, %.3f at 512\n", lights.size(), coarse,
+              fine);
   EXPECT_GE(coarse, 0.97);  // .994 when this was written: three lobes a window
   EXPECT_GE(fine, 0.92);    // .961
 }
@@ -124,7 +129,8 @@ TEST(Lights, TurnWithTheEnvironment) {
   Environment turned = room;
   for (int y = 0; y < 256; ++y)
     for (int x = 0; x < 512; ++x) turned.radiance.at((x + 128) % 512, y) = room.radiance.at(x, y);
-  const std::vector<SgLight> before = fitLights(room.radiance, {.lightCount = 4}), after = fitLights(turned.radiance, {.lightCount = 4});
+  const std::vector<SgLight> before = fitLights(room.radiance, {.lightCount = 4}),
+                             after = fitLights(turned.radiance, {.lightCount = 4});
   ASSERT_EQ(before.size(), after.size());
   for (std::size_t k = 0; k < before.size(); ++k) {
     const glm::dvec3 expected(-before[k].axis.z, before[k].axis.y, before[k].axis.x);
@@ -150,14 +156,19 @@ TEST(Lights, ExplainPhotographedEnvironments) {
   const char* data = std::getenv("CHIARO_DATA");
   const char* source = std::getenv("CHIARO_SOURCE_DIR");
   const std::filesystem::path folder =
-      (data ? std::filesystem::path(data) : std::filesystem::path(source ? source : ".") / ".." / "shared" / "data") / "clear" / "hdr";
-  if (!std::filesystem::exists(folder)) GTEST_SKIP() << folder << " is not there: set CHIARO_DATA to a folder with clear/hdr/*.hdr";
+      (data ? std::filesystem::path(data) : std::filesystem::path(source ? source : ".") / ".." / "shared" / "data") / "clear" /
+      "hdr";
+  if (!std::filesystem::exists(folder))
+    GTEST_SKIP() << folder << " is not there: set CHIARO_DATA to a folder with clear/hdr/*.hdr";
   struct Case {
     const char* name;
     double at128, at512;
   };
-  // A little under what was measured when this was written: .9999/1.0000, .951/.903, .899/.905, .9999/.9996.
-  const Case cases[] = {{"kloppenheim_05_1k", 0.99, 0.99}, {"lebombo_1k", 0.93, 0.88}, {"st_fagans_interior_1k", 0.87, 0.87}, {"studio_small_03_1k", 0.99, 0.99}};
+  // A little under what was measured when this was written: .998/1.000, .952/.904, .939/.879, .9999/.9996.
+  const Case cases[] = {{"kloppenheim_05_1k", 0.99, 0.99},
+                        {"lebombo_1k", 0.93, 0.88},
+                        {"st_fagans_interior_1k", 0.91, 0.85},
+                        {"studio_small_03_1k", 0.99, 0.99}};
   for (const Case& one : cases) {
     const Environment environment{one.name, readHdrImage(folder / (std::string(one.name) + ".hdr"))};
     const std::vector<SgLight> lights = fitLights(environment.radiance, {});

@@ -29,14 +29,16 @@ Environment makeEnvironment(int width, int height, int samples, const std::funct
 }
 
 Environment constantEnvironment(int width, int height, glm::vec3 value) {
-  return {"constant", {width, height, std::vector<glm::vec3>(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), value)}};
+  return {"constant",
+          {width, height, std::vector<glm::vec3>(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), value)}};
 }
 
 Environment noisyEnvironment(int width, int height, unsigned seed) {
   std::mt19937 random(seed);
   Environment environment = constantEnvironment(width, height, glm::vec3(0.0f));
   const auto uniform = [&] { return static_cast<float>(random() >> 8) / static_cast<float>(1 << 24); };
-  for (glm::vec3& texel : environment.radiance.texels) texel = glm::vec3(uniform(), uniform(), uniform()) * (uniform() < 0.01f ? 100.0f : 1.0f);
+  for (glm::vec3& texel : environment.radiance.texels)
+    texel = glm::vec3(uniform(), uniform(), uniform()) * (uniform() < 0.01f ? 100.0f : 1.0f);
   return environment;
 }
 
@@ -44,7 +46,8 @@ Environment discOnSky(int width, glm::dvec3 axis, double angularRadius, double d
   axis = glm::normalize(axis);
   const double radiance = discFlux / (2 * kPi * (1 - std::cos(angularRadius)));
   const double margin = angularRadius + 4 * 2 * kPi / width;
-  Environment environment = makeEnvironment(width, width / 2, 1, [&](const glm::dvec3& w) { return glm::dvec3(0.4, 0.5, 0.8) * (1.0 + 0.5 * w.y); });
+  Environment environment =
+      makeEnvironment(width, width / 2, 1, [&](const glm::dvec3& w) { return glm::dvec3(0.4, 0.5, 0.8) * (1.0 + 0.5 * w.y); });
   for (int y = 0; y < width / 2; ++y)
     for (int x = 0; x < width; ++x) {
       const glm::dvec3 centre = lobe64::directionFromEquirect({(x + 0.5) / width, (y + 0.5) / (width / 2)});
@@ -52,7 +55,8 @@ Environment discOnSky(int width, glm::dvec3 axis, double angularRadius, double d
       constexpr int kSamples = 64;
       int inside = 0;
       for (int k = 0; k < kSamples * kSamples; ++k) {
-        const glm::dvec3 w = lobe64::directionFromEquirect({(x + (k % kSamples + 0.5) / kSamples) / width, (y + (k / kSamples + 0.5) / kSamples) / (width / 2)});
+        const glm::dvec3 w = lobe64::directionFromEquirect(
+            {(x + (k % kSamples + 0.5) / kSamples) / width, (y + (k / kSamples + 0.5) / kSamples) / (width / 2)});
         inside += 2 * std::asin(std::min(1.0, 0.5 * glm::length(w - axis))) <= angularRadius;
       }
       environment.radiance.at(x, y) += static_cast<float>(radiance * inside / (kSamples * kSamples));
@@ -64,7 +68,8 @@ Environment windowedRoom(int width) {
   struct Window {
     double azimuth, elevation, width, height, radiance;
   };
-  const Window windows[] = {{0.0, 0.2, 0.35, 0.5, 20}, {0.9, 0.2, 0.25, 0.5, 15}, {-1.1, 0.3, 0.15, 0.6, 30}, {2.6, 0.5, 0.08, 0.08, 60}};
+  const Window windows[] = {
+      {0.0, 0.2, 0.35, 0.5, 20}, {0.9, 0.2, 0.25, 0.5, 15}, {-1.1, 0.3, 0.15, 0.6, 30}, {2.6, 0.5, 0.08, 0.08, 60}};
   return makeEnvironment(width, width / 2, 2, [&](const glm::dvec3& w) {
     const double azimuth = std::atan2(w.x, -w.z), elevation = std::asin(std::clamp(w.y, -1.0, 1.0));
     for (const Window& window : windows)
@@ -87,7 +92,9 @@ glm::dvec3 fluxOf(const ImageRgb& map) {
   return sum;
 }
 
-glm::dvec3 fluxOf(const SgLight& light) { return glm::dvec3(light.amplitude) * lobe64::sgUnitIntegral(static_cast<double>(light.sharpness)); }
+glm::dvec3 fluxOf(const SgLight& light) {
+  return glm::dvec3(light.amplitude) * lobe64::sgUnitIntegral(static_cast<double>(light.sharpness));
+}
 
 glm::dvec3 sumUnderKernel(const ImageRgb& map, const glm::dvec3& direction, double sharpness, int subdivision) {
   const int width = map.width * subdivision, height = map.height * subdivision;
@@ -106,7 +113,8 @@ glm::dvec3 sumUnderKernel(const ImageRgb& map, const glm::dvec3& direction, doub
       const int left = static_cast<int>(sourceX) % map.width, right = (left + 1) % map.width;
       const double fx = sourceX - std::floor(sourceX), fy = sourceY - top;
       const auto at = [&](int i, int j) { return glm::dvec3(map.at(i, j)); };
-      const glm::dvec3 value = (1 - fy) * ((1 - fx) * at(left, top) + fx * at(right, top)) + fy * ((1 - fx) * at(left, bottom) + fx * at(right, bottom));
+      const glm::dvec3 value = (1 - fy) * ((1 - fx) * at(left, top) + fx * at(right, top)) +
+                               fy * ((1 - fx) * at(left, bottom) + fx * at(right, bottom));
       const double weight = solidAngle * std::exp(exponent);
       sum += weight * value;
       weights += weight;
@@ -131,7 +139,8 @@ double explainedShare(const Environment& environment, const std::vector<SgLight>
       const glm::dvec3 w = lobe64::directionFromEquirect({(i + 0.5) / fine.width(), (j + 0.5) / fine.height()});
       glm::dvec3 explained(0.0);
       for (const SgLight& light : lights)
-        explained += glm::dvec3(light.amplitude) * (blurred(light, w, sharpness) - blurred(light, w, 1.0 / (1.0 / sharpness + 1.0 / 32.0)));
+        explained += glm::dvec3(light.amplitude) *
+                     (blurred(light, w, sharpness) - blurred(light, w, 1.0 / (1.0 / sharpness + 1.0 / 32.0)));
       for (int c = 0; c < 3; ++c) {
         const double value = fine.texel(i, j)[c], rest = value - explained[c];
         const double weight = std::sin(kPi * (j + 0.5) / fine.height());
@@ -142,6 +151,8 @@ double explainedShare(const Environment& environment, const std::vector<SgLight>
   return 1.0 - left / all;
 }
 
-const std::vector<PrefilteredLevel>& levelsOf(const SgPyramid& pyramid, int layer) { return layer == 0 ? pyramid.layer0 : pyramid.layer1; }
+const std::vector<PrefilteredLevel>& levelsOf(const SgPyramid& pyramid, int layer) {
+  return layer == 0 ? pyramid.layer0 : pyramid.layer1;
+}
 
 }  // namespace chiaro::test

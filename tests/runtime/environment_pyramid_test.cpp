@@ -32,7 +32,8 @@ void forEachTexel(const SgPyramid& pyramid, const Visit& visit) {
     for (const PrefilteredLevel& level : levelsOf(pyramid, layer)) {
       const int n = level.faceResolution;
       for (int i = 0; i < 6 * n * n; ++i)
-        visit(level, glm::normalize(glm::dvec3(cubeTexelDirection(i / (n * n), i % n, i / n % n, n))), level.texels[static_cast<std::size_t>(i)]);
+        visit(level, glm::normalize(glm::dvec3(cubeTexelDirection(i / (n * n), i % n, i / n % n, n))),
+              level.texels[static_cast<std::size_t>(i)]);
     }
 }
 
@@ -100,7 +101,8 @@ TEST(Pyramid, AgreesWithPlainSummation) {
         const int i = static_cast<int>(random() % static_cast<unsigned>(6 * n * n));
         const glm::dvec3 direction = glm::normalize(glm::dvec3(cubeTexelDirection(i / (n * n), i % n, i / n % n, n)));
         const glm::dvec3 expected = sumUnderKernel(environment.radiance, direction, static_cast<double>(level.sharpness), 8);
-        const double error = glm::length(glm::dvec3(level.texels[static_cast<std::size_t>(i)]) - expected) / static_cast<double>(brightest);
+        const double error =
+            glm::length(glm::dvec3(level.texels[static_cast<std::size_t>(i)]) - expected) / static_cast<double>(brightest);
         worst = error <= worst ? worst : error;
         // Texels halved twice instead of interpolated exactly between rows (3e-3 at texels as wide as the finest kernel), cubic lookup 4e-4.
         EXPECT_LE(error, 4e-3) << "sharpness " << level.sharpness;
@@ -114,7 +116,8 @@ TEST(Pyramid, SgEnvironmentGivesTheInnerProduct) {
   const glm::dvec3 axis = glm::normalize(glm::dvec3(0.3, 0.8, -0.4));
   constexpr double kSharpness = 40.0;
   const auto source = lobe64::sphericalGaussian(axis, kSharpness, 2.5);
-  const Environment environment = makeEnvironment(512, 256, 1, [&](const glm::dvec3& w) { return glm::dvec3(lobe64::sgEvaluate(source, w)); });
+  const Environment environment =
+      makeEnvironment(512, 256, 1, [&](const glm::dvec3& w) { return glm::dvec3(lobe64::sgEvaluate(source, w)); });
   const SgPyramid pyramid = pyramidOf(environment, 128);
   forEachTexel(pyramid, [&](const PrefilteredLevel& level, const glm::dvec3& w, const glm::vec3& texel) {
     const double kernel = level.sharpness;
@@ -143,14 +146,16 @@ TEST(Pyramid, SingleTexelGivesTheKernel) {
 }
 
 TEST(Pyramid, KeepsTheEnergyOfEveryLevel) {
-  for (const Environment& environment : {noisyEnvironment(200, 77, 1), noisyEnvironment(256, 128, 2), noisyEnvironment(700, 400, 3), windowedRoom(256)}) {
+  for (const Environment& environment :
+       {noisyEnvironment(200, 77, 1), noisyEnvironment(256, 128, 2), noisyEnvironment(700, 400, 3), windowedRoom(256)}) {
     const glm::dvec3 expected = fluxOf(environment.radiance);
     const SgPyramid pyramid = pyramidOf(environment, 64);
     for (int layer = 0; layer < 2; ++layer)
       for (const PrefilteredLevel& level : levelsOf(pyramid, layer)) {
         const int n = level.faceResolution;
         glm::dvec3 sum(0.0);
-        for (int i = 0; i < 6 * n * n; ++i) sum += cubeTexelSolidAngle(i % n, i / n % n, n) * glm::dvec3(level.texels[static_cast<std::size_t>(i)]);
+        for (int i = 0; i < 6 * n * n; ++i)
+          sum += cubeTexelSolidAngle(i % n, i / n % n, n) * glm::dvec3(level.texels[static_cast<std::size_t>(i)]);
         // The sum itself, texel centres for texel means, is good to 1e-3 at 6 sqrt(sharpness) texels a face.
         for (int c = 0; c < 3; ++c) EXPECT_LE(std::abs(sum[c] / expected[c] - 1.0), 1e-3) << "sharpness " << level.sharpness;
       }
@@ -160,13 +165,15 @@ TEST(Pyramid, KeepsTheEnergyOfEveryLevel) {
 TEST(Pyramid, IsLinear) {
   const Environment a = noisyEnvironment(128, 64, 1), b = windowedRoom(128);
   Environment mix = a;
-  for (std::size_t i = 0; i < mix.radiance.texels.size(); ++i) mix.radiance.texels[i] = 2.0f * a.radiance.texels[i] + 0.5f * b.radiance.texels[i];
+  for (std::size_t i = 0; i < mix.radiance.texels.size(); ++i)
+    mix.radiance.texels[i] = 2.0f * a.radiance.texels[i] + 0.5f * b.radiance.texels[i];
   const SgPyramid pa = pyramidOf(a, 64), pb = pyramidOf(b, 64), pm = pyramidOf(mix, 64);
   for (int layer = 0; layer < 2; ++layer)
     for (std::size_t m = 0; m < pm.layer0.size(); ++m)
       for (std::size_t i = 0; i < levelsOf(pm, layer)[m].texels.size(); ++i) {
         const glm::vec3 sum = 2.0f * levelsOf(pa, layer)[m].texels[i] + 0.5f * levelsOf(pb, layer)[m].texels[i];
-        ASSERT_LE(glm::length(levelsOf(pm, layer)[m].texels[i] - sum), 1e-4f * (1.0f + glm::length(sum)));  // float rounding of bright texels
+        ASSERT_LE(glm::length(levelsOf(pm, layer)[m].texels[i] - sum),
+                  1e-4f * (1.0f + glm::length(sum)));  // float rounding of bright texels
       }
 }
 
@@ -178,7 +185,8 @@ TEST(Pyramid, QuarterTurnTurnsTheFaces) {
   const SgPyramid before = pyramidOf(environment, 64), after = pyramidOf(turned, 64);
   std::mt19937 random(9);
   for (int k = 0; k < 2000; ++k) {
-    const glm::vec3 w = lobe32::directionFromEquirect({static_cast<float>(random() % 9973) / 9973.0f, static_cast<float>(random() % 9967) / 9967.0f});
+    const glm::vec3 w = lobe32::directionFromEquirect(
+        {static_cast<float>(random() % 9973) / 9973.0f, static_cast<float>(random() % 9967) / 9967.0f});
     const glm::vec3 there(-w.z, w.y, w.x);  // -Z, the image's centre, goes to +X, a quarter to its right
     const float sharpness = std::exp2(static_cast<float>(random() % 80) / 10.0f - 1.0f);
     const glm::vec3 expected = samplePyramid(before, w, sharpness);
@@ -191,12 +199,16 @@ TEST(Pyramid, PolesAreNotSpecial) {
   const glm::dvec3 axes[] = {{0, 1, 0}, {0, -1, 0}, {0, 0, -1}, glm::normalize(glm::dvec3(0.02, 1.0, 0.01))};
   for (const glm::dvec3& axis : axes) {
     const auto source = lobe64::sphericalGaussian(axis, 300.0, 1.0);
-    const Environment environment = makeEnvironment(1024, 512, 1, [&](const glm::dvec3& w) { return glm::dvec3(lobe64::sgEvaluate(source, w)); });
+    const Environment environment =
+        makeEnvironment(1024, 512, 1, [&](const glm::dvec3& w) { return glm::dvec3(lobe64::sgEvaluate(source, w)); });
     const SgPyramid pyramid = pyramidOf(environment, 256);
     forEachTexel(pyramid, [&](const PrefilteredLevel& level, const glm::dvec3& w, const glm::vec3& texel) {
       const double kernel = level.sharpness;
-      const auto expected = [&](const glm::dvec3& d) { return lobe64::sgInnerProduct(source, lobe64::sphericalGaussian(d, kernel, lobe64::vmfAmplitude(kernel))); };
-      ASSERT_LE(std::abs(texel.y - expected(w)), 3e-3 * expected(axis)) << "sharpness " << kernel;  // interpolated source .2 %, lookup 4e-4
+      const auto expected = [&](const glm::dvec3& d) {
+        return lobe64::sgInnerProduct(source, lobe64::sphericalGaussian(d, kernel, lobe64::vmfAmplitude(kernel)));
+      };
+      ASSERT_LE(std::abs(texel.y - expected(w)), 3e-3 * expected(axis))
+          << "sharpness " << kernel;  // interpolated source .2 %, lookup 4e-4
     });
   }
 }
@@ -241,7 +253,8 @@ TEST(Pyramid, NeverNegativeBesideASun) {
   const Environment environment = discOnSky(512, {0.4, 0.7, 0.3}, 0.01, 100.0);
   forEachTexel(pyramidOf(environment, 256), [&](const PrefilteredLevel& level, const glm::dvec3&, const glm::vec3& texel) {
     for (int c = 0; c < 3; ++c) {
-      ASSERT_GE(texel[c], 0.15f) << "sharpness " << level.sharpness;  // the sky alone is 0.2 at its darkest; ripple 1e-7 of a sun of 3e4
+      ASSERT_GE(texel[c], 0.15f) << "sharpness "
+                                 << level.sharpness;  // the sky alone is 0.2 at its darkest; ripple 1e-7 of a sun of 3e4
       ASSERT_LE(texel[c], 1e6f);
     }
   });
@@ -282,7 +295,8 @@ TEST(Prepare, BlackIsBlack) {
   settings.finestResolution = 16;
   const SgEnvironment black = prepareEnvironment(constantEnvironment(16, 8, glm::vec3(0.0f)), settings);
   EXPECT_TRUE(black.lights.empty());
-  forEachTexel(black.pyramid, [](const PrefilteredLevel&, const glm::dvec3&, const glm::vec3& texel) { EXPECT_EQ(texel, glm::vec3(0.0f)); });
+  forEachTexel(black.pyramid,
+               [](const PrefilteredLevel&, const glm::dvec3&, const glm::vec3& texel) { EXPECT_EQ(texel, glm::vec3(0.0f)); });
 }
 
 }  // namespace
