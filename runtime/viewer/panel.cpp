@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <numbers>
+#include <filesystem>
 
 #include "runtime/viewer/view_options.h"
 
@@ -30,7 +30,9 @@ std::optional<std::size_t> chooser(const char* label, const std::vector<std::str
 
 void drawLight(PanelState& state, PanelActions& actions) {
   if (!ImGui::CollapsingHeader("Light", ImGuiTreeNodeFlags_DefaultOpen)) return;
-  actions.environment = chooser("environment", state.environments, state.environment);
+  std::vector<std::string> names;  // of a file, the name without its folders
+  for (const auto& name : state.environments) names.push_back(std::filesystem::path(name).filename().string());
+  actions.environment = chooser("environment", names, state.environment);
   ImGui::SliderFloat("rotation", &state.rotationDegrees, -180.0f, 180.0f, "%.0f deg");
   ImGui::Checkbox("shadows", &state.shadows);
   ImGui::SameLine();

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <exception>
 #include <future>
+#include <limits>
 #include <map>
 #include <memory>
 #include <numbers>
@@ -17,6 +18,7 @@
 #include "assets/scene/camera_spec.h"
 #include "runtime/viewer/orbit_camera.h"
 #include "runtime/viewer/panel.h"
+#include "runtime/viewer/preview.h"
 #include "runtime/viewer/view_inputs.h"
 #include "runtime/viewer/view_run.h"
 #include "runtime/viewer/window.h"
@@ -26,6 +28,7 @@ namespace {
 
 constexpr float kDegrees = std::numbers::pi_v<float> / 180.0f;
 constexpr float kKeyStep = 5.0f * kDegrees;
+constexpr double kRestSeconds = 0.2;                     // without a change, before a slow driver draws the whole picture
 constexpr float kDragTurn = std::numbers::pi_v<float>;  // a drag over the window's height is half a turn
 
 std::string titleOf(const std::filesystem::path& path) { return path.filename().string() + " - Chiaro"; }
@@ -92,7 +95,7 @@ class InteractiveView {
   void run() {
     int unsettled = 3;  // Dear ImGui needs a few frames until its layout rests
     while (!window_.closing()) {
-      const bool awaiting = pendingEnvironment_.valid() || pendingScene_.valid();
+      const bool awaiting = pendingEnvironment_.valid() || pendingScene_.valid() || coarse_;
       window_.pollEvents(unsettled > 0 || state_.continuous ? 0.0 : awaiting ? 0.05 : 0.5);
       if (collectPending() || window_.takeActivity()) unsettled = 3;
       for (const auto& path : window_.takeDroppedFiles()) open(path);
@@ -101,7 +104,7 @@ class InteractiveView {
         window_.pollEvents(0.1);
         continue;
       }
-      if (unsettled == 0 && !state_.continuous) continue;
+      if (unsettled == 0 && !state_.continuous && !coarse_) continue;
       drawFrame(size);
       if (unsettled > 0) --unsettled;
     }
@@ -168,7 +171,7 @@ class InteractiveView {
     if (actions.savePicture) saveWanted_ = true;
   }
 
-  void render(glm::ivec2 size) {
+  RenderSettings wantedSettings(glm::ivec2 size) const {
     RenderSettings settings;
     settings.width = size.x;
     settings.height = size.y;
@@ -179,13 +182,29 @@ class InteractiveView {
     settings.shadows = state_.shadows;
     settings.background = state_.background;
     settings.debugView = state_.debugView;
-    // A resting picture costs nothing: what was drawn last is shown again.
-    if (!stale_ && !state_.continuous && same(settings, drawn_) && same(orbit_.camera(), drawnFrom_)) return;
+    return settings;
+  }
+
+  /// Draws what has changed: coarsely while it goes on changing where the driver is slow, and whole when it rests. A picture
+  /// at rest costs nothing: what was drawn last is shown again.
+  void render(glm::ivec2 size) {
+    const RenderSettings wanted = wantedSettings(size);
+    const bool changed = stale_ || !same(wanted, wanted_) || !same(orbit_.camera(), drawnFrom_);
+    const bool whole = state_.continuous || saveWanted_;
+    if (changed) changedAt_ = secondsNow();
+    const bool rested = secondsNow() - changedAt_ > kRestSeconds;
+    if (!state_.continuous && !changed && !(coarse_ && (rested || whole))) return;
+
+    const RenderSettings settings = changed && !whole ? previewSettings(wanted, millisecondsPerSample_) : wanted;
     renderer_->render(orbit_.camera(), settings);
     state_.passes = renderer_->timings().passes;
-    if (!state_.passes.empty()) state_.history.add(static_cast<float>(state_.passes.back().second));
-    drawn_ = settings;
+    if (!state_.passes.empty()) {
+      state_.history.add(static_cast<float>(state_.passes.back().second));
+      millisecondsPerSample_ = state_.passes.back().second / sampleCount(settings);
+    }
+    wanted_ = wanted;
     drawnFrom_ = orbit_.camera();
+    coarse_ = !same(settings, wanted);
     stale_ = false;
   }
 
@@ -303,9 +322,12 @@ class InteractiveView {
   std::future<PreparedEnvironment> pendingEnvironment_;
   std::string pendingName_;
   std::future<LoadedScene> pendingScene_;
-  RenderSettings drawn_;
+  RenderSettings wanted_;     // of the last frame, before any coarsening
   Camera drawnFrom_;
-  bool stale_ = true;
+  bool stale_ = true;         // materials, environment or scene are not those of the last frame
+  bool coarse_ = false;       // the last frame was a preview
+  double changedAt_ = 0.0;
+  double millisecondsPerSample_ = std::numeric_limits<double>::infinity();
   bool saveWanted_ = false;
 };
 

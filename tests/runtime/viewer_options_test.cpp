@@ -4,10 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "assets/error.h"
 #include "runtime/viewer/frame_statistics.h"
 #include "runtime/viewer/panel.h"
+#include "runtime/viewer/preview.h"
 #include "runtime/viewer/view_inputs.h"
 #include "runtime/viewer/view_options.h"
 
@@ -80,6 +82,32 @@ TEST(Panel, ExposureInStops) {
   EXPECT_EQ(exposureFactor(state, 0.5f), 2.0f);
   state.autoExposure = false;
   EXPECT_EQ(exposureFactor(state, 0.5f), 4.0f);
+}
+
+TEST(Preview, IsTheWholeFrameWhereThatIsFast) {
+  RenderSettings full;
+  full.supersample = 2;
+  const double fast = kPreviewMilliseconds / sampleCount(full);
+  EXPECT_EQ(previewSettings(full, fast).width, full.width);
+  EXPECT_EQ(previewSettings(full, fast).supersample, 2);
+}
+
+TEST(Preview, FirstGivesUpSupersamplingThenSize) {
+  RenderSettings full;
+  full.supersample = 2;
+  const double perSample = kPreviewMilliseconds / sampleCount(full);
+  EXPECT_EQ(previewSettings(full, 2.0 * perSample).supersample, 1);
+  EXPECT_EQ(previewSettings(full, 2.0 * perSample).width, full.width);
+  const RenderSettings coarse = previewSettings(full, 32.0 * perSample);
+  EXPECT_EQ(coarse.width, full.width / 3) << "8 times too slow without supersampling: a third each way is enough, a half is not";
+  EXPECT_EQ(coarse.height, full.height / 3);
+}
+
+TEST(Preview, NeverCoarserThanAnEighthNorEmpty) {
+  RenderSettings full;
+  EXPECT_EQ(previewSettings(full, std::numeric_limits<double>::infinity()).width, full.width / 8);
+  full.width = full.height = 3;
+  EXPECT_EQ(previewSettings(full, std::numeric_limits<double>::infinity()).width, 1);
 }
 
 }  // namespace
