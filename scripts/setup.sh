@@ -7,7 +7,7 @@ packages="
   g++ cmake ninja-build ccache pkg-config git
   libembree-dev libeigen3-dev libopenmesh-dev
   libglm-dev libcli11-dev nlohmann-json3-dev libxxhash-dev
-  libtinygltf-dev libstb-dev libopenexr-dev
+  libtinygltf-dev libpng-dev libturbojpeg0-dev libopenexr-dev
   libepoxy-dev libegl-dev libgl-dev libglfw3-dev libimgui-dev
   libegl1 libegl-mesa0 libgl1-mesa-dri
   libgtest-dev libgmock-dev libbenchmark-dev

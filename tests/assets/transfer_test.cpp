@@ -146,8 +146,8 @@ struct Parts {
 
   void sumViews() {
     auto sums = nlohmann::ordered_json::array();
-    for (const auto& view : json["bufferViews"]) {
-      const auto offset = view["byteOffset"].get<std::size_t>(), length = view["byteLength"].get<std::size_t>();
+    for (const auto& view : json.at("bufferViews")) {
+      const auto offset = view.at("byteOffset").get<std::size_t>(), length = view.at("byteLength").get<std::size_t>();
       if (offset > binary.size() || length > binary.size() - offset) throw std::out_of_range("a buffer view lies nowhere");
       sums.push_back(checksumOf(std::span(binary).subspan(offset, length)));
     }
