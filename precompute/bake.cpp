@@ -67,8 +67,8 @@ Traced traceScene(const RayScene& rays, const OctahedralGrid& grid, const std::v
   traced.fractions.resize(viewpoints.size() * directionCount);
 
   const auto start = Clock::now();
+  StepCounter finished(viewpoints.size(), progress);
   std::mutex mutex;
-  std::size_t finished = 0;
   double visibilityTime = 0.0, ssdfTime = 0.0;  // of all threads together
   parallelBlocks(settings.threads, (viewpoints.size() + kBlock - 1) / kBlock, [&](std::size_t block) {
     Scratch scratch(grid);
@@ -90,12 +90,13 @@ Traced traceScene(const RayScene& rays, const OctahedralGrid& grid, const std::v
       visibilitySeconds += std::chrono::duration<double>(ssdfStart - traceStart).count();
       ssdfSeconds += secondsSince(ssdfStart);
     }
-    const std::lock_guard lock(mutex);
-    finished += end - block * kBlock;
-    traced.rays += rayCount;
-    visibilityTime += visibilitySeconds;
-    ssdfTime += ssdfSeconds;
-    if (progress) progress(static_cast<double>(finished) / static_cast<double>(viewpoints.size()));
+    {
+      const std::lock_guard lock(mutex);
+      traced.rays += rayCount;
+      visibilityTime += visibilitySeconds;
+      ssdfTime += ssdfSeconds;
+    }
+    finished.add(end - block * kBlock);
   });
   const double wall = secondsSince(start);
   traced.visibilitySeconds = wall * visibilityTime / (visibilityTime + ssdfTime);
@@ -172,7 +173,7 @@ BakedScene bake(const Scene& scene, const BakeSettings& settings, BakeReport& re
   const TracedSignal signal{.grid = &grid, .rays = &rays, .viewpoints = &viewpoints, .ssdf = &traced.ssdf};
   report.terms = transfer.terms;
   report.bytesPerVertex = transfer.bytesPerVertex(report.vertices);
-  report.error = measureBakeError(signal, pca, transfer, settings);
+  report.error = measureBakeError(signal, pca, transfer, settings, stage("error"));
   baked.facts = factsOf(settings, report);
   report.seconds.total = secondsSince(start);
   return baked;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <random>
 
@@ -19,6 +20,7 @@ constexpr std::size_t kSampledVertices = 256;
 constexpr std::size_t kAxes = 16;
 constexpr std::uint32_t kRays = 256;
 constexpr std::size_t kRowBlock = 128;
+constexpr std::size_t kStepsPerSample = 64;  // a sampled vertex takes about as long as that many others
 
 using RowMatrix = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
@@ -58,7 +60,7 @@ struct SignalError {
   double wrongSign = 0.0, signSolidAngle = 0.0;      ///< where it counts
 };
 
-SignalError signalError(const TracedSignal& traced, const Transfer& transfer, int threads) {
+SignalError signalError(const TracedSignal& traced, const Transfer& transfer, int threads, StepCounter& steps) {
   const auto& grid = *traced.grid;
   const auto& ssdf = *traced.ssdf;
   const auto terms = static_cast<Eigen::Index>(transfer.terms);
@@ -93,6 +95,7 @@ SignalError signalError(const TracedSignal& traced, const Transfer& transfer, in
         if ((value > 0.0f) != (expected > 0.0f)) parts[block].wrongSign += solidAngle;
       }
     }
+    steps.add(count);
   });
   SignalError sum;
   for (const auto& part : parts) {
@@ -136,14 +139,16 @@ glm::vec3 lobeDirection(glm::dvec3 axis, double sharpness, std::uint32_t i, doub
   return glm::vec3(glm::normalize((1.0 - t) * axis + sine * (std::cos(phi) * x + std::sin(phi) * y)));
 }
 
+/// On the axis' side of the surface; beyond the horizon the truth is the mirror image of what is before it.
 double tracedFraction(const RayScene& rays, const Viewpoint& viewpoint, glm::dvec3 axis, double sharpness, double turn) {
+  const bool front = glm::dot(glm::vec3(axis), viewpoint.normal) > 0.0f;
+  const auto n = front ? viewpoint.normal : -viewpoint.normal;
+  const auto origin = front ? viewpoint.front : viewpoint.back;
   std::uint32_t seen = 0;
   for (std::uint32_t i = 0; i < kRays; ++i) {
     auto w = lobeDirection(axis, sharpness, i, turn);
-    const float cosine = glm::dot(w, viewpoint.normal);
-    const bool below = !(cosine > 0.0f);
-    if (below && !viewpoint.doubleSided) w -= 2.0f * cosine * viewpoint.normal;
-    const auto origin = below && viewpoint.doubleSided ? viewpoint.back : viewpoint.front;
+    const float cosine = glm::dot(w, n);
+    if (cosine < 0.0f) w -= 2.0f * cosine * n;
     if (!rays.occluded(origin, w, 0.0f, std::numeric_limits<float>::infinity())) ++seen;
   }
   return static_cast<double>(seen) / kRays;
@@ -153,7 +158,7 @@ struct FractionError {
   std::array<double, kSharpness.size()> stored{}, uncompressed{};
 };
 
-FractionError fractionError(const TracedSignal& traced, const Transfer& transfer, const BakeSettings& settings) {
+FractionError fractionError(const TracedSignal& traced, const Transfer& transfer, const BakeSettings& settings, StepCounter& steps) {
   const auto& grid = *traced.grid;
   const auto vertices = sampleVertices(traced.viewpoints->size(), kSampledVertices, settings.seed + 1);
   std::vector<FractionError> parts(vertices.size());
@@ -178,6 +183,7 @@ FractionError fractionError(const TracedSignal& traced, const Transfer& transfer
         parts[i].uncompressed[s] += std::abs(lobe64::ssdfVisibleFraction(exactDistance, kSharpness[s]) - truth);
       }
     }
+    steps.add(kStepsPerSample);
   });
   FractionError mean;
   const double count = static_cast<double>(vertices.size() * kAxes);
@@ -193,16 +199,18 @@ FractionError fractionError(const TracedSignal& traced, const Transfer& transfer
 }  // namespace
 
 std::vector<std::pair<std::string, double>> measureBakeError(const TracedSignal& traced, const Pca& pca, const Transfer& transfer,
-                                                             const BakeSettings& settings) {
+                                                             const BakeSettings& settings, const std::function<void(double)>& progress) {
+  const auto vertexCount = traced.viewpoints->size();
+  StepCounter steps(vertexCount + kStepsPerSample * std::min(kSampledVertices, vertexCount), progress);
   std::vector<std::pair<std::string, double>> result;
-  const auto signal = signalError(traced, transfer, settings.threads);
+  const auto signal = signalError(traced, transfer, settings.threads, steps);
   result.emplace_back("ssdf_rms_radians", std::sqrt(signal.squared / signal.solidAngle));
   double kept = 0.0;
   for (const double e : pca.energy) kept += e;
   result.emplace_back("ssdf_discarded_rms_radians", std::sqrt(std::max(pca.totalEnergy - kept, 0.0) / signal.solidAngle));
   result.emplace_back("ssdf_sign_share", signal.wrongSign / signal.signSolidAngle);
   result.emplace_back("ssdf_quantisation_rms_radians", quantisationRms(traced, pca, transfer, settings));
-  const auto fractions = fractionError(traced, transfer, settings);
+  const auto fractions = fractionError(traced, transfer, settings, steps);
   for (std::size_t s = 0; s < kSharpness.size(); ++s)
     result.emplace_back("visible_fraction_mean_abs_" + std::to_string(kSharpness[s]), fractions.stored[s]);
   for (std::size_t s = 0; s < kSharpness.size(); ++s)

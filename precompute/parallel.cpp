@@ -37,4 +37,11 @@ void parallelBlocks(int threads, std::size_t blockCount, const std::function<voi
   if (failure) std::rethrow_exception(failure);
 }
 
+void StepCounter::add(std::size_t steps) {
+  if (!handler_) return;
+  const std::lock_guard lock(mutex_);
+  count_ += steps;
+  handler_(static_cast<double>(count_) / static_cast<double>(total_));
+}
+
 }  // namespace chiaro

@@ -3,7 +3,6 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <mutex>
 #include <numbers>
 
 #include "precompute/parallel.h"
@@ -32,23 +31,6 @@ float gaussian(std::uint64_t seed, std::uint64_t index) {
   return static_cast<float>(std::sqrt(-2.0 * std::log(unit(mix(key)))) * std::cos(2.0 * std::numbers::pi * unit(mix(key + 1))));
 }
 
-/// Counts finished blocks for the progress handler.
-class Steps {
- public:
-  Steps(std::size_t total, const std::function<void(double)>& handler) : total_(total), handler_(handler) {}
-  void done() {
-    if (!handler_) return;
-    const std::lock_guard lock(mutex_);
-    handler_(static_cast<double>(++count_) / static_cast<double>(total_));
-  }
-
- private:
-  std::mutex mutex_;
-  std::size_t count_ = 0;
-  std::size_t total_;
-  const std::function<void(double)>& handler_;
-};
-
 /// The centred matrix with its columns multiplied by sqrt(columnWeight), never built whole.
 class Weighted {
  public:
@@ -66,20 +48,20 @@ class Weighted {
   }
 
   /// The matrix times `right` (#columns by l): #rows by l.
-  RowMatrix times(const RowMatrix& right, Steps& steps) const {
+  RowMatrix times(const RowMatrix& right, StepCounter& steps) const {
     RowMatrix result(static_cast<Eigen::Index>(matrix_.rows), right.cols());
     parallelBlocks(threads_, blocks(matrix_.rows, kRowBlock), [&](std::size_t block) {
       const auto first = block * kRowBlock, count = std::min(kRowBlock, matrix_.rows - first);
       RowMatrix part(static_cast<Eigen::Index>(count), static_cast<Eigen::Index>(matrix_.columns));
       load(first, count, 0, matrix_.columns, part);
       result.middleRows(static_cast<Eigen::Index>(first), static_cast<Eigen::Index>(count)).noalias() = part * right;
-      steps.done();
+      steps.add();
     });
     return result;
   }
 
   /// The transposed matrix times `left` (#rows by l): #columns by l. Each block of columns sums over the rows in their order.
-  RowMatrix transposedTimes(const RowMatrix& left, Steps& steps) const {
+  RowMatrix transposedTimes(const RowMatrix& left, StepCounter& steps) const {
     RowMatrix result(static_cast<Eigen::Index>(matrix_.columns), left.cols());
     parallelBlocks(threads_, blocks(matrix_.columns, kColumnBlock), [&](std::size_t block) {
       const auto first = block * kColumnBlock, count = std::min(kColumnBlock, matrix_.columns - first);
@@ -93,7 +75,7 @@ class Weighted {
         sum += product.cast<double>();
       }
       result.middleRows(static_cast<Eigen::Index>(first), static_cast<Eigen::Index>(count)) = sum.cast<float>();
-      steps.done();
+      steps.add();
     });
     return result;
   }
@@ -141,8 +123,10 @@ RowMatrix orthonormalised(const RowMatrix& block) {
 void FixedPointMatrix::setRow(std::size_t i, const float* source) {
   auto* target = row(i);
   const float scale = 32767.0f / range;
-  for (std::size_t j = 0; j < columns; ++j)
-    target[j] = static_cast<std::int16_t>(std::lrint(std::clamp(source[j] * scale, -32767.0f, 32767.0f)));
+  for (std::size_t j = 0; j < columns; ++j) {
+    const float scaled = std::clamp(source[j] * scale, -32767.0f, 32767.0f);
+    target[j] = static_cast<std::int16_t>(scaled + (scaled < 0.0f ? -0.5f : 0.5f));  // a form that compilers vectorise
+  }
 }
 
 Pca computePca(const FixedPointMatrix& matrix, const std::vector<float>& columnWeight, const PcaSettings& settings,
@@ -161,7 +145,7 @@ Pca computePca(const FixedPointMatrix& matrix, const std::vector<float>& columnW
 
   const auto rowBlocks = blocks(matrix.rows, kRowBlock), columnBlocks = blocks(matrix.columns, kColumnBlock);
   const auto iterations = static_cast<std::size_t>(settings.iterations);
-  Steps steps(iterations * (rowBlocks + columnBlocks) + rowBlocks, progress);
+  StepCounter steps(iterations * (rowBlocks + columnBlocks) + rowBlocks, progress);
 
   RowMatrix basis(static_cast<Eigen::Index>(matrix.columns), width);
   for (Eigen::Index i = 0; i < basis.size(); ++i) basis.data()[i] = gaussian(settings.seed, static_cast<std::uint64_t>(i));

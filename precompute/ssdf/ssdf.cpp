@@ -15,43 +15,76 @@ glm::vec3 fold(glm::vec3 w, glm::vec3 n) {
   return cosine < 0.0f ? w - 2.0f * cosine * n : w;
 }
 
-const Float16& at(const AlignedFloats& values, std::size_t first) { return *reinterpret_cast<const Float16*>(values.data() + first); }
-
 /// Squared chords from `center` to `count` points (rounded up to 16); returns the smallest.
-CHIARO_CLONES
-float chordsTo(const AlignedFloats& x, const AlignedFloats& y, const AlignedFloats& z, std::size_t count, glm::vec3 center,
-               AlignedFloats& chord2) {
-  Float16 least = Float16{} + 16.0f;
-  for (std::size_t i = 0; i < count; i += 16) {
-    const Float16 dx = at(x, i) - center.x, dy = at(y, i) - center.y, dz = at(z, i) - center.z;
-    const Float16 c = dx * dx + dy * dy + dz * dz;
-    *reinterpret_cast<Float16*>(chord2.data() + i) = c;
-    least = c < least ? c : least;
-  }
-  float result = least[0];
-  for (int i = 1; i < 16; ++i) result = std::min(result, least[i]);
-  return result;
+float chordsTo(const AlignedFloats& px, const AlignedFloats& py, const AlignedFloats& pz, std::size_t pointCount, glm::vec3 from,
+               AlignedFloats& chords) {
+  float smallest = 0.0f;
+  runVectorised([&]<typename Vector>() CHIARO_INLINE {
+    const float *x = px.data(), *y = py.data(), *z = pz.data();
+    float* chord2 = chords.data();
+    const std::size_t count = pointCount;
+    const glm::vec3 center = from;
+    Vector least = Vector{} + 16.0f;
+    for (std::size_t i = 0; i < count; i += kWidth<Vector>) {
+      const Vector dx = loadVector<Vector>(x + i) - center.x, dy = loadVector<Vector>(y + i) - center.y,
+                   dz = loadVector<Vector>(z + i) - center.z;
+      const Vector c = dx * dx + dy * dy + dz * dz;
+      storeVector(chord2 + i, c);
+      least = c < least ? c : least;
+    }
+    smallest = least[0];
+    for (int i = 1; i < kWidth<Vector>; ++i) smallest = std::min(smallest, least[i]);
+  });
+  return smallest;
 }
 
 /// angle[i] = 2 asin(chord / 2), at most pi/2, of the nearest of `count` points to each of sixteen directions. The arcsine is its odd
 /// polynomial interpolated on chord^2 / 4 in [0, 1/2]; relative error 7e-8.
-CHIARO_CLONES
-void nearestAngles(const float* px, const float* py, const float* pz, std::size_t count, const float* qx, const float* qy,
-                   const float* qz, float* angle) {
-  const auto x = *reinterpret_cast<const Float16*>(qx), y = *reinterpret_cast<const Float16*>(qy),
-             z = *reinterpret_cast<const Float16*>(qz);
-  Float16 least = Float16{} + 2.0f;
-  for (std::size_t i = 0; i < count; ++i) {
-    const Float16 dx = x - px[i], dy = y - py[i], dz = z - pz[i];
-    const Float16 c = dx * dx + dy * dy + dz * dz;
-    least = c < least ? c : least;
+void nearestAngles(const AlignedFloats& px, const AlignedFloats& py, const AlignedFloats& pz, std::size_t pointCount, const float* qx,
+                   const float* qy, const float* qz, float* angle) {
+  alignas(64) float chord2[16], ratio[16];
+  runVectorised([&]<typename Vector>() CHIARO_INLINE {
+    const float *x = px.data(), *y = py.data(), *z = pz.data();
+    const std::size_t count = pointCount;
+    constexpr float kSeries[] = {1.0f,          0.166666142f, 0.0750275732f, 0.0440916167f, 0.0358142393f,
+                                 -0.00702057912f, 0.107400021f, -0.135916271f, 0.123913495f};
+    constexpr int kParts = 16 / kWidth<Vector>;
+    Vector least[kParts], wx[kParts], wy[kParts], wz[kParts];
+    for (int k = 0; k < kParts; ++k) {
+      least[k] = Vector{} + 2.0f;
+      wx[k] = loadVector<Vector>(qx + k * kWidth<Vector>);
+      wy[k] = loadVector<Vector>(qy + k * kWidth<Vector>);
+      wz[k] = loadVector<Vector>(qz + k * kWidth<Vector>);
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      for (int k = 0; k < kParts; ++k) {
+        const Vector dx = wx[k] - x[i], dy = wy[k] - y[i], dz = wz[k] - z[i];
+        const Vector c = dx * dx + dy * dy + dz * dz;
+        least[k] = c < least[k] ? c : least[k];
+      }
+    }
+    for (int k = 0; k < kParts; ++k) {
+      const Vector s = 0.25f * least[k];
+      Vector series = Vector{} + kSeries[8];
+      for (int j = 7; j >= 0; --j) series = series * s + kSeries[j];
+      storeVector(chord2 + k * kWidth<Vector>, least[k]);
+      storeVector(ratio + k * kWidth<Vector>, series);
+    }
+  });
+  for (int lane = 0; lane < 16; ++lane) {
+    const float a = std::sqrt(chord2[lane]) * ratio[lane];
+    angle[lane] = a < kMaxDistance ? a : kMaxDistance;
   }
-  constexpr float kSeries[] = {1.0f,          0.166666142f, 0.0750275732f, 0.0440916167f, 0.0358142393f,
-                               -0.00702057912f, 0.107400021f, -0.135916271f, 0.123913495f};
-  const Float16 s = 0.25f * least;
-  Float16 series = Float16{} + kSeries[8];
-  for (int k = 7; k >= 0; --k) series = series * s + kSeries[k];
-  for (int lane = 0; lane < 16; ++lane) angle[lane] = std::min(std::sqrt(least[lane]) * series[lane], kMaxDistance);
+}
+
+/// Directions of one tile, those below the horizon of `normal` mirrored in it.
+void foldTile(const float* x, const float* y, const float* z, const float* cosine, glm::vec3 normal, float* qx, float* qy, float* qz) {
+  for (int lane = 0; lane < 16; ++lane) {
+    const float lift = 2.0f * (cosine[lane] < 0.0f ? cosine[lane] : 0.0f);
+    qx[lane] = x[lane] - lift * normal.x;
+    qy[lane] = y[lane] - lift * normal.y;
+    qz[lane] = z[lane] - lift * normal.z;
+  }
 }
 
 /// Repeats the last point up to a multiple of sixteen, so that loops need no remainder.
@@ -64,10 +97,17 @@ void pad(AlignedFloats& values, std::size_t count) {
 void boundaryPoints(const OctahedralGrid& grid, const TexelBits& above, const TexelBits& visible, bool doubleSided,
                     std::vector<glm::vec3>& points) {
   points.clear();
-  for (const auto& [a, b] : grid.neighbours) {
-    if (texelBit(visible.data(), a) == texelBit(visible.data(), b)) continue;
-    if (!doubleSided && !(texelBit(above.data(), a) && texelBit(above.data(), b))) continue;
-    points.push_back(glm::normalize(grid.direction(a) + grid.direction(b)));
+  for (std::size_t tile = 0; tile < grid.tileCount; ++tile) {
+    // Most tiles are of one kind, and so are those around them.
+    const auto bits = visible[tile];
+    const auto& around = grid.tilesAround[tile];
+    if ((bits == 0 || bits == 0xffff) && std::all_of(around.begin(), around.end(), [&](std::uint32_t t) { return visible[t] == bits; })) continue;
+    for (auto i = grid.firstNeighbour[tile]; i < grid.firstNeighbour[tile + 1]; ++i) {
+      const auto& [a, b] = grid.neighbours[i];
+      if (texelBit(visible.data(), a) == texelBit(visible.data(), b)) continue;
+      if (!doubleSided && !(texelBit(above.data(), a) && texelBit(above.data(), b))) continue;
+      points.push_back(glm::normalize(grid.direction(a) + grid.direction(b)));
+    }
   }
 }
 
@@ -145,23 +185,23 @@ void SsdfTransform::operator()(glm::vec3 normal, const AlignedFloats& cosine, co
   if (chord2_.data() == nullptr || all_.capacity > chordCapacity_) chord2_ = AlignedFloats(chordCapacity_ = all_.capacity);
 
   const auto folded = [&](glm::vec3 w) { return doubleSided ? w : fold(w, normal); };
-  alignas(64) float qx[16], qy[16], qz[16], angle[16];
+  alignas(64) float angle[16];
   for (const auto& group : groups_) {
     cull(all_, folded(group.center), group.radius, near_);
     for (std::uint32_t k = 0; k < group.tileCount; ++k) {
       const auto tile = tiles_[group.firstTile + k];
       cull(near_, folded(tileBounds_[tile].center), tileBounds_[tile].radius, nearest_);
       const std::size_t first = 16 * std::size_t{tile};
-      for (std::size_t lane = 0; lane < 16; ++lane) {
-        const auto t = first + lane;
-        const float lift = doubleSided || texelBit(above.data(), t) ? 0.0f : 2.0f * cosine[t];
-        qx[lane] = grid_.x[t] - lift * normal.x;
-        qy[lane] = grid_.y[t] - lift * normal.y;
-        qz[lane] = grid_.z[t] - lift * normal.z;
+      const float *qx = grid_.x.data() + first, *qy = grid_.y.data() + first, *qz = grid_.z.data() + first;
+      if (!doubleSided && above[tile] != 0xffff) {
+        foldTile(qx, qy, qz, cosine.data() + first, normal, folded_[0], folded_[1], folded_[2]);
+        qx = folded_[0];
+        qy = folded_[1];
+        qz = folded_[2];
       }
-      nearestAngles(nearest_.x.data(), nearest_.y.data(), nearest_.z.data(), nearest_.count, qx, qy, qz, angle);
-      for (std::size_t lane = 0; lane < 16; ++lane)
-        distances[grid_.rowMajor[first + lane]] = (visible[tile] >> lane & 1) != 0 ? angle[lane] : -angle[lane];
+      nearestAngles(nearest_.x, nearest_.y, nearest_.z, nearest_.count, qx, qy, qz, angle);
+      for (std::size_t lane = 0; lane < 16; ++lane) angle[lane] = (visible[tile] >> lane & 1) != 0 ? angle[lane] : -angle[lane];
+      for (std::size_t row = 0; row < 4; ++row) std::copy_n(angle + 4 * row, 4, distances + grid_.rowMajor[first + 4 * row]);
     }
   }
 }

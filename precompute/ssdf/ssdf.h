@@ -12,7 +12,10 @@ namespace chiaro {
 inline constexpr float kMaxDistance = 1.57079632679f;  ///< radians; also the value where there is no edge at all
 
 /// The edges of what is hidden, as points: normalised midpoints of texels that share an edge and differ in `visible`.
-/// For a one-sided vertex only between texels of `above`; below the horizon there is nothing but their mirror images.
+/// For a one-sided vertex only between texels of `above`; below the horizon there is nothing but their mirror images. For a double-sided
+/// one the horizon is an edge where front and back see differently: leaving it out would be truer near the horizon (mean error of the
+/// visible fraction at sharpness 10: .033 instead of .040 on a helmet), but then the map jumps there, and no linear basis follows a
+/// jump (compressed to 48 terms: rms .093 instead of .031 rad, at sharpness 1000 .025 instead of .020).
 void boundaryPoints(const OctahedralGrid& grid, const TexelBits& above, const TexelBits& visible, bool doubleSided,
                     std::vector<glm::vec3>& points);
 
@@ -51,6 +54,7 @@ class SsdfTransform {
   std::vector<Group> tileBounds_;      ///< 4x4 texels, by tile
   std::vector<glm::vec3> boundary_;
   Points all_, near_, nearest_;
+  alignas(64) float folded_[3][16];
   AlignedFloats chord2_;
   std::size_t chordCapacity_ = 0;
 };

@@ -37,6 +37,18 @@ OctahedralGrid::OctahedralGrid(int side)
   }
   std::sort(neighbours.begin(), neighbours.end());
   neighbours.erase(std::unique(neighbours.begin(), neighbours.end()), neighbours.end());
+
+  tilesAround.resize(tileCount);
+  std::size_t next = 0;
+  for (std::uint32_t tile = 0; tile < tileCount; ++tile) {
+    firstNeighbour.push_back(next);
+    auto& around = tilesAround[tile];
+    for (; next < neighbours.size() && neighbours[next].first / 16 == tile; ++next) {
+      const auto other = neighbours[next].second / 16;
+      if (other != tile && std::find(around.begin(), around.end(), other) == around.end()) around.push_back(other);
+    }
+  }
+  firstNeighbour.push_back(next);
 }
 
 std::size_t OctahedralGrid::texelAt(glm::vec3 direction) const {

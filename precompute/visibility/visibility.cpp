@@ -3,8 +3,6 @@
 #include <bit>
 #include <limits>
 
-#include "precompute/simd.h"
-
 namespace chiaro {
 namespace {
 
@@ -31,15 +29,14 @@ std::size_t nearestTraced(const OctahedralGrid& grid, const TexelBits& above, gl
 
 }  // namespace
 
-CHIARO_CLONES
 void texelsAbove(const OctahedralGrid& grid, glm::vec3 normal, AlignedFloats& cosine, TexelBits& above) {
   above.resize(grid.tileCount);
+  const float *x = grid.x.data(), *y = grid.y.data(), *z = grid.z.data();
+  float* dot = cosine.data();
+  for (std::size_t t = 0; t < grid.texelCount; ++t) dot[t] = x[t] * normal.x + y[t] * normal.y + z[t] * normal.z;
   for (std::size_t tile = 0; tile < grid.tileCount; ++tile) {
-    const auto at = [tile](const AlignedFloats& values) { return reinterpret_cast<const Float16*>(values.data() + 16 * tile); };
-    const Float16 c = *at(grid.x) * normal.x + *at(grid.y) * normal.y + *at(grid.z) * normal.z;
-    *reinterpret_cast<Float16*>(cosine.data() + 16 * tile) = c;
     unsigned bits = 0;
-    for (int lane = 0; lane < 16; ++lane) bits |= static_cast<unsigned>(c[lane] > 0.0f) << lane;
+    for (unsigned lane = 0; lane < 16; ++lane) bits |= static_cast<unsigned>(dot[16 * tile + lane] > 0.0f) << lane;
     above[tile] = static_cast<std::uint16_t>(bits);
   }
 }

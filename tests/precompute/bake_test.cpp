@@ -141,7 +141,7 @@ TEST(Bake, RefusesWhatItCannotDo) {
 }
 
 TEST(Bake, ProgressMayStopIt) {
-  for (const std::string stop : {"visibility", "compression"}) {
+  for (const std::string stop : {"visibility", "compression", "error"}) {
     BakeReport report;
     auto settings = kCoarse;
     settings.threads = 3;
