@@ -69,6 +69,7 @@ void drawRuntime(const BakedScene& baked, const PreparedLight& light, const Came
   RenderSettings settings;
   settings.width = options.size.x;
   settings.height = options.size.y;
+  settings.supersample = options.supersample;
   settings.exposure = comparison.display.exposure;
   settings.toneMap = comparison.display.toneMap;
   settings.shadows = options.shadows;
@@ -84,7 +85,8 @@ ReferenceHalves drawReference(const Scene& scene, const Environment& environment
   ReferenceSettings settings;
   settings.width = options.size.x;
   settings.height = options.size.y;
-  settings.samplesPerPixel = (options.samples + 1) / 2;
+  settings.samplesPerPixel = std::max(2, (options.samples + 1) / 2);
+  settings.pixelGrid = options.supersample;
   settings.shadows = options.shadows;
   settings.threads = options.threads;
   const auto half = [&](std::uint32_t seed) {

@@ -73,6 +73,9 @@ void declareReportOptions(CLI::App& app, ReportOptions& options, ReportOptionTex
                  "eye=X,Y,Z,target=X,Y,Z,fov-deg=D")
       ->type_name("SPEC")
       ->capture_default_str();
+  app.add_option("--supersample", options.supersample, "N by N shaded points a pixel, 1 to 8, in both pictures")
+      ->type_name("N")
+      ->capture_default_str();
   app.add_option("--samples", options.samples, "Sample pairs a pixel of the reference; its noise falls with their root")
       ->type_name("N")
       ->capture_default_str();
@@ -99,6 +102,8 @@ void finishReportOptions(ReportOptions& options, const ReportOptionTexts& texts)
   options.shadows = !texts.noShadows;
   for (const float roughness : options.roughnesses) requireShare(roughness, "--roughness");
   if (options.metallic) requireShare(*options.metallic, "--metallic");
+  if (options.supersample < 1 || options.supersample > 8)
+    throw usageError("--supersample", "must lie between 1 and 8", "give 2 to filter edges and textures");
   if (options.samples < 2 || options.samples > kMostSamples)
     throw usageError("--samples", "must lie between 2 and " + std::to_string(kMostSamples), "give a number such as 256");
   if (options.failUnder && !std::isfinite(*options.failUnder))

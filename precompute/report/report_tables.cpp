@@ -97,6 +97,7 @@ std::string reportJson(const ReportFacts& facts, const ReportOptions& options, c
   json["directions"] = facts.directions;
   json["bytes_per_vertex"] = number(facts.bytesPerVertex);
   json["size"] = {options.size.x, options.size.y};
+  json["supersample"] = options.supersample;
   json["samples"] = options.samples;
   json["shadows"] = options.shadows;
   json["metallic"] = number(options.metallic);
