@@ -72,7 +72,7 @@ struct Renderer::Impl {
   gl::VertexArray noAttributes = gl::VertexArray::create();
   gl::Buffer frameBuffer{sizeof(FrameBlock)};
   gl::Buffer lightEigen;
-  std::optional<Target> shaded, resolved, displayed;
+  std::unique_ptr<Target> shaded, resolved, displayed;
   std::vector<gl::TimerQuery> timers;
   gl::TimerQuery totalTimer = gl::TimerQuery::create();
   RenderSettings last;
@@ -102,12 +102,12 @@ struct Renderer::Impl {
   void resize(int width, int height, int supersample) {
     if (!resolved || resolved->color.width() != width || resolved->color.height() != height) {
       resolved.reset();
-      resolved.emplace(width, height, GL_RGBA32F, false);
+      resolved = std::make_unique<Target>(width, height, GL_RGBA32F, false);
     }
     const int w = width * supersample, h = height * supersample;
     if (!shaded || shaded->color.width() != w || shaded->color.height() != h) {
       shaded.reset();
-      shaded.emplace(w, h, GL_RGBA32F, true);
+      shaded = std::make_unique<Target>(w, h, GL_RGBA32F, true);
     }
   }
 
@@ -298,7 +298,7 @@ ImageRgba Renderer::readRadiance() {
 Image8 Renderer::readDisplay() {
   impl_->requireFrame();
   const int width = impl_->resolved->color.width(), height = impl_->resolved->color.height();
-  impl_->displayed.emplace(width, height, GL_RGBA8, false);
+  impl_->displayed = std::make_unique<Target>(width, height, GL_RGBA8, false);
   impl_->display(impl_->displayed->framebuffer.id(), width, height);
   std::vector<std::uint32_t> texels(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
   impl_->displayed->color.download(0, GL_RGBA, GL_UNSIGNED_BYTE, texels.data(), texels.size() * sizeof(std::uint32_t));
