@@ -38,7 +38,8 @@ class Temporary {
  public:
   explicit Temporary(const std::filesystem::path& target) : target_(target) {
     // A nameless file gets its name through /proc.
-    if (::access("/proc/self/fd", X_OK) == 0) descriptor_ = ::open(folderOf(target).c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
+    if (::access("/proc/self/fd", X_OK) == 0)
+      descriptor_ = ::open(folderOf(target).c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
     if (descriptor_ >= 0) return;
     name_ = target.string() + ".XXXXXX";
     descriptor_ = ::mkstemp(name_.data());
@@ -73,8 +74,10 @@ class Temporary {
     if (name_.empty() && linkAs(target_)) return flushFolder();
     for (int attempt = 0; name_.empty(); ++attempt) {
       const std::string name = target_.string() + "." + std::to_string(::getpid()) + "-" + std::to_string(attempt);
-      if (linkAs(name)) name_ = name;
-      else if (errno != EEXIST || attempt == 100) fail();
+      if (linkAs(name))
+        name_ = name;
+      else if (errno != EEXIST || attempt == 100)
+        fail();
     }
     if (::rename(name_.c_str(), target_.c_str()) != 0) fail();
     name_.clear();
@@ -82,7 +85,9 @@ class Temporary {
   }
 
  private:
-  [[noreturn]] void fail() const { throw outputError(target_.string(), "cannot name the finished file: " + reason(), "check the folder's permissions"); }
+  [[noreturn]] void fail() const {
+    throw outputError(target_.string(), "cannot name the finished file: " + reason(), "check the folder's permissions");
+  }
 
   /// Gives the nameless file a name that is not taken.
   bool linkAs(const std::filesystem::path& name) const {

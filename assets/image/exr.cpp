@@ -27,7 +27,8 @@ class MemoryInput final : public Imf::IStream {
 
   bool read(char out[], int count) override {
     const auto wanted = static_cast<std::size_t>(count);
-    if (count < 0 || position_ > bytes_.size() || wanted > bytes_.size() - position_) throw std::runtime_error("the file is truncated");
+    if (count < 0 || position_ > bytes_.size() || wanted > bytes_.size() - position_)
+      throw std::runtime_error("the file is truncated");
     std::memcpy(out, bytes_.data() + position_, wanted);
     position_ += wanted;
     return position_ < bytes_.size();
@@ -77,7 +78,8 @@ void place(const Windows& windows, int y, const glm::vec4* line, ImageRgba& imag
   if (y < windows.display.min.y || y > windows.display.max.y) return;
   const int first = std::max(windows.data.min.x, windows.display.min.x);
   const int last = std::min(windows.data.max.x, windows.display.max.x);
-  for (int x = first; x <= last; ++x) image.at(x - windows.display.min.x, y - windows.display.min.y) = line[x - windows.data.min.x];
+  for (int x = first; x <= last; ++x)
+    image.at(x - windows.display.min.x, y - windows.display.min.y) = line[x - windows.data.min.x];
 }
 
 /// A slice over a line whose first texel is x = data.min.x; the same line serves every y.
@@ -109,14 +111,16 @@ void readColor(Imf::MultiPartInputFile& file, const Windows& windows, bool lumin
   }
 }
 
-void readLuminanceChroma(std::span<const std::uint8_t> bytes, const std::string& where, const Windows& windows, ImageRgba& image) {
+void readLuminanceChroma(std::span<const std::uint8_t> bytes, const std::string& where, const Windows& windows,
+                         ImageRgba& image) {
   MemoryInput input(bytes, where);
   Imf::RgbaInputFile file(input);
   const int width = windows.dataWidth();
   std::vector<Imf::Rgba> half(static_cast<std::size_t>(width));
   std::vector<glm::vec4> line(half.size());
   for (int y = windows.data.min.y; y <= windows.data.max.y; ++y) {
-    const auto start = reinterpret_cast<std::intptr_t>(half.data()) - static_cast<std::intptr_t>(sizeof(Imf::Rgba)) * windows.data.min.x;
+    const auto start =
+        reinterpret_cast<std::intptr_t>(half.data()) - static_cast<std::intptr_t>(sizeof(Imf::Rgba)) * windows.data.min.x;
     file.setFrameBuffer(reinterpret_cast<Imf::Rgba*>(start), 1, 0);
     file.readPixels(y, y);
     for (std::size_t x = 0; x < half.size(); ++x) line[x] = glm::vec4(half[x].r, half[x].g, half[x].b, half[x].a);
@@ -145,13 +149,16 @@ void readPrimaries(const Imf::Header& header, const std::string& where, ExrImage
   if (!Imf::hasChromaticities(header)) return;
   const Imf::Chromaticities file = Imf::chromaticities(header), rec709;
   const auto distance = [](Imath::V2f a, Imath::V2f b) { return (a - b).length(); };
-  if (distance(file.red, rec709.red) + distance(file.green, rec709.green) + distance(file.blue, rec709.blue) + distance(file.white, rec709.white) < 1e-4f)
+  if (distance(file.red, rec709.red) + distance(file.green, rec709.green) + distance(file.blue, rec709.blue) +
+          distance(file.white, rec709.white) <
+      1e-4f)
     return;
   const glm::dmat3 matrix =
       glm::inverse(xyzFromRgb(rec709)) * adaptation(xyzOf(file.white), xyzOf(rec709.white)) * xyzFromRgb(file);
   for (int c = 0; c < 3; ++c)
     for (int r = 0; r < 3; ++r)
-      if (!std::isfinite(matrix[c][r])) throw inputError(where, "its chromaticities make no colour space", "save the image again");
+      if (!std::isfinite(matrix[c][r]))
+        throw inputError(where, "its chromaticities make no colour space", "save the image again");
   out.rec709 = false;
   out.rec709FromFile = glm::mat3(matrix);
 }
@@ -179,16 +186,21 @@ ExrImage decodeExr(std::span<const std::uint8_t> bytes, const std::string& where
     if (header.hasType() && !Imf::isImage(header.type())) throw inputError(where, "holds a deep image", "flatten it");
     const Windows windows(header, where);
     const Imf::ChannelList& channels = header.channels();
-    const bool rgb = channels.findChannel("R") != nullptr && channels.findChannel("G") != nullptr && channels.findChannel("B") != nullptr;
+    const bool rgb =
+        channels.findChannel("R") != nullptr && channels.findChannel("G") != nullptr && channels.findChannel("B") != nullptr;
     const bool chroma = channels.findChannel("RY") != nullptr && channels.findChannel("BY") != nullptr;
     if (!rgb && channels.findChannel("Y") == nullptr)
-      throw inputError(where, "has neither R, G and B nor Y among its channels (" + channelNames(channels) + ")", "save it with one of these");
+      throw inputError(where, "has neither R, G and B nor Y among its channels (" + channelNames(channels) + ")",
+                       "save it with one of these");
     ExrImage out;
     out.image.width = windows.displayWidth();
     out.image.height = windows.displayHeight();
-    out.image.texels.assign(static_cast<std::size_t>(out.image.width) * static_cast<std::size_t>(out.image.height), glm::vec4(0.0f));
-    if (rgb || !chroma) readColor(file, windows, !rgb, out.image);
-    else readLuminanceChroma(bytes, where, windows, out.image);
+    out.image.texels.assign(static_cast<std::size_t>(out.image.width) * static_cast<std::size_t>(out.image.height),
+                            glm::vec4(0.0f));
+    if (rgb || !chroma)
+      readColor(file, windows, !rgb, out.image);
+    else
+      readLuminanceChroma(bytes, where, windows, out.image);
     // Grey has no hue to convert.
     if (rgb || chroma) readPrimaries(header, where, out);
     return out;
@@ -210,8 +222,10 @@ std::vector<std::uint8_t> encodeExr(const ImageRgba& image) {
   for (int c = 0; c < 4; ++c) {
     header.channels().insert(names[c], Imf::Channel(Imf::FLOAT));
     // OpenEXR's slices serve reading and writing, hence the cast; writing does not change them.
-    auto* base = const_cast<char*>(reinterpret_cast<const char*>(image.texels.data())) + sizeof(float) * static_cast<std::size_t>(c);
-    buffer.insert(names[c], Imf::Slice(Imf::FLOAT, base, sizeof(glm::vec4), sizeof(glm::vec4) * static_cast<std::size_t>(image.width)));
+    auto* base =
+        const_cast<char*>(reinterpret_cast<const char*>(image.texels.data())) + sizeof(float) * static_cast<std::size_t>(c);
+    buffer.insert(names[c],
+                  Imf::Slice(Imf::FLOAT, base, sizeof(glm::vec4), sizeof(glm::vec4) * static_cast<std::size_t>(image.width)));
   }
   MemoryOutput output;
   {

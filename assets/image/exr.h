@@ -11,8 +11,8 @@
 namespace chiaro {
 
 struct ExrImage {
-  ImageRgba image;               ///< over the display window; 0 outside the data window
-  bool rec709 = true;            ///< false when the header names other primaries or another white
+  ImageRgba image;                 ///< over the display window; 0 outside the data window
+  bool rec709 = true;              ///< false when the header names other primaries or another white
   glm::mat3 rec709FromFile{1.0f};  ///< adapted to D65 (Bradford)
 };
 

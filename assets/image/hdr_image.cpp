@@ -22,7 +22,9 @@ void requireRadiance(const ImageRgb& image, const std::string& where) {
     const bool ok = t.x >= 0.0f && t.y >= 0.0f && t.z >= 0.0f && std::isfinite(t.x) && std::isfinite(t.y) && std::isfinite(t.z);
     if (ok) continue;
     const auto width = static_cast<std::size_t>(image.width);
-    throw inputError(where, "texel (" + std::to_string(i % width) + ", " + std::to_string(i / width) + ") is negative or not finite", "repair the image");
+    throw inputError(where,
+                     "texel (" + std::to_string(i % width) + ", " + std::to_string(i / width) + ") is negative or not finite",
+                     "repair the image");
   }
 }
 
@@ -44,7 +46,8 @@ ImageRgb radianceOf(const ExrImage& exr, const std::string& where) {
 
 ImageRgb readHdrImage(const std::filesystem::path& path) {
   const bool exr = hasExtension(path, ".exr");
-  if (!exr && !hasExtension(path, ".hdr")) throw inputError(path.string(), "is neither .hdr nor .exr", "convert it to one of them");
+  if (!exr && !hasExtension(path, ".hdr"))
+    throw inputError(path.string(), "is neither .hdr nor .exr", "convert it to one of them");
   const auto bytes = readFile(path);
   return exr ? radianceOf(decodeExr(bytes, path.string()), path.string()) : decodeRadianceHdr(bytes, path.string());
 }

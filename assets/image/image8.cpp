@@ -7,7 +7,9 @@
 namespace chiaro {
 namespace {
 
-Error unknownFormat(const std::string& where) { return inputError(where, "is neither a PNG nor a JPEG image", "convert it to one of them"); }
+Error unknownFormat(const std::string& where) {
+  return inputError(where, "is neither a PNG nor a JPEG image", "convert it to one of them");
+}
 
 }  // namespace
 

@@ -31,8 +31,10 @@ struct Session {
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
   ~Session() {
-    if (reading_) png_destroy_read_struct(&png, &info, nullptr);
-    else png_destroy_write_struct(&png, &info);
+    if (reading_)
+      png_destroy_read_struct(&png, &info, nullptr);
+    else
+      png_destroy_write_struct(&png, &info);
   }
 
  private:
@@ -95,8 +97,8 @@ void writeBytes(png_structp png, png_bytep data, std::size_t count) {
 bool writeAll(Session& s, const Image8& image, png_bytepp rows) {
   if (setjmp(png_jmpbuf(s.png)) != 0) return false;
   png_set_write_fn(s.png, &s, writeBytes, nullptr);
-  png_set_IHDR(s.png, s.info, static_cast<png_uint_32>(image.width), static_cast<png_uint_32>(image.height), 8, PNG_COLOR_TYPE_RGBA,
-               PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+  png_set_IHDR(s.png, s.info, static_cast<png_uint_32>(image.width), static_cast<png_uint_32>(image.height), 8,
+               PNG_COLOR_TYPE_RGBA, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
   png_set_rows(s.png, s.info, rows);
   png_write_png(s.png, s.info, PNG_TRANSFORM_IDENTITY, nullptr);
   return true;
@@ -121,9 +123,11 @@ bool isPng(std::span<const std::uint8_t> bytes) {
 
 glm::ivec2 pngSize(std::span<const std::uint8_t> bytes, const std::string& where) {
   // The first chunk, whose width and height stand at byte 16, must be IHDR.
-  if (bytes.size() < 24 || std::memcmp(bytes.data() + 12, "IHDR", 4) != 0) throw inputError(where, "the PNG image is truncated or damaged", "save it again");
+  if (bytes.size() < 24 || std::memcmp(bytes.data() + 12, "IHDR", 4) != 0)
+    throw inputError(where, "the PNG image is truncated or damaged", "save it again");
   const auto word = [&](std::size_t at) {
-    return std::int64_t{bytes[at]} << 24 | std::int64_t{bytes[at + 1]} << 16 | std::int64_t{bytes[at + 2]} << 8 | std::int64_t{bytes[at + 3]};
+    return std::int64_t{bytes[at]} << 24 | std::int64_t{bytes[at + 1]} << 16 | std::int64_t{bytes[at + 2]} << 8 |
+           std::int64_t{bytes[at + 3]};
   };
   requireImageSize(word(16), word(20), where);
   return {static_cast<int>(word(16)), static_cast<int>(word(20))};
@@ -154,7 +158,8 @@ std::vector<std::uint8_t> encodePng(const Image8& image) {
   session.out = &bytes;
   // libpng's rows are not const, though writing only reads them.
   auto rows = rowsOf(const_cast<std::uint8_t*>(image.texels.data()), image.width, image.height);
-  if (!writeAll(session, image, rows.data())) throw Error(ExitCode::failed, "PNG", std::string("the image cannot be encoded (") + session.message + ")", "");
+  if (!writeAll(session, image, rows.data()))
+    throw Error(ExitCode::failed, "PNG", std::string("the image cannot be encoded (") + session.message + ")", "");
   return bytes;
 }
 

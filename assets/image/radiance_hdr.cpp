@@ -49,7 +49,8 @@ class Decoder {
     const std::string magic = line();
     if (magic.rfind("#?", 0) != 0) throw fail("is not a Radiance HDR image (it does not start with \"#?\")");
     for (std::string text = line(); !text.empty(); text = line()) {
-      if (text.rfind("FORMAT=", 0) == 0 && text != "FORMAT=32-bit_rle_rgbe") throw fail("has the unsupported format \"" + text.substr(7) + "\"");
+      if (text.rfind("FORMAT=", 0) == 0 && text != "FORMAT=32-bit_rle_rgbe")
+        throw fail("has the unsupported format \"" + text.substr(7) + "\"");
       if (text.rfind("EXPOSURE=", 0) == 0) {
         const double exposure = std::strtod(text.c_str() + 9, nullptr);
         if (!(exposure > 0.0) || !std::isfinite(exposure)) throw fail("has a malformed line \"" + text + "\"");
@@ -149,6 +150,8 @@ class Decoder {
 
 }  // namespace
 
-ImageRgb decodeRadianceHdr(std::span<const std::uint8_t> bytes, const std::string& where) { return Decoder(bytes, where).decode(); }
+ImageRgb decodeRadianceHdr(std::span<const std::uint8_t> bytes, const std::string& where) {
+  return Decoder(bytes, where).decode();
+}
 
 }  // namespace chiaro

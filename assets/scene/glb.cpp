@@ -18,7 +18,8 @@ std::uint32_t word(std::span<const std::uint8_t> bytes, std::size_t offset) {
 }
 
 Error truncated(const std::string& where, std::size_t expected, std::size_t found) {
-  return inputError(where, "the file is truncated: it has " + std::to_string(found) + " of " + std::to_string(expected) + " bytes",
+  return inputError(where,
+                    "the file is truncated: it has " + std::to_string(found) + " of " + std::to_string(expected) + " bytes",
                     "copy or make it again");
 }
 
@@ -28,7 +29,8 @@ bool startsLikeGlb(std::span<const std::uint8_t> bytes) { return bytes.size() >=
 
 GlbChunks parseGlb(std::span<const std::uint8_t> bytes, const std::string& where) {
   if (bytes.size() < 4) throw truncated(where, kHeaderSize, bytes.size());
-  if (!startsLikeGlb(bytes)) throw inputError(where, "is not a binary glTF file (its first bytes are not \"glTF\")", "name a .glb file");
+  if (!startsLikeGlb(bytes))
+    throw inputError(where, "is not a binary glTF file (its first bytes are not \"glTF\")", "name a .glb file");
   if (bytes.size() < kHeaderSize) throw truncated(where, kHeaderSize, bytes.size());
   if (word(bytes, 4) != kGlbVersion)
     throw inputError(where, "has binary glTF version " + std::to_string(word(bytes, 4)) + ", not 2", "convert it to glTF 2.0");
@@ -45,10 +47,13 @@ GlbChunks parseGlb(std::span<const std::uint8_t> bytes, const std::string& where
     const std::size_t size = word(bytes, offset);
     const std::uint32_t type = word(bytes, offset + 4);
     offset += kChunkHeaderSize;
-    if (size > length - offset) throw inputError(where, "chunk " + std::to_string(index) + " is longer than the file", "copy or make it again");
-    if (size % 4 != 0) throw inputError(where, "chunk " + std::to_string(index) + " is not a multiple of 4 bytes long", "copy or make it again");
+    if (size > length - offset)
+      throw inputError(where, "chunk " + std::to_string(index) + " is longer than the file", "copy or make it again");
+    if (size % 4 != 0)
+      throw inputError(where, "chunk " + std::to_string(index) + " is not a multiple of 4 bytes long", "copy or make it again");
     const auto content = bytes.subspan(offset, size);
-    if ((index == 0) != (type == kGlbJsonChunk)) throw inputError(where, "its JSON chunk is not the first", "copy or make it again");
+    if ((index == 0) != (type == kGlbJsonChunk))
+      throw inputError(where, "its JSON chunk is not the first", "copy or make it again");
     if (index == 0) chunks.json = {reinterpret_cast<const char*>(content.data()), content.size()};
     if (type == kGlbBinaryChunk) {
       if (sawBinary) throw inputError(where, "has two BIN chunks", "make it again");

@@ -8,9 +8,9 @@
 
 namespace chiaro {
 
-inline constexpr std::uint32_t kGlbMagic = 0x46546C67;      ///< "glTF"
+inline constexpr std::uint32_t kGlbMagic = 0x46546C67;  ///< "glTF"
 inline constexpr std::uint32_t kGlbVersion = 2;
-inline constexpr std::uint32_t kGlbJsonChunk = 0x4E4F534A;  ///< "JSON"
+inline constexpr std::uint32_t kGlbJsonChunk = 0x4E4F534A;    ///< "JSON"
 inline constexpr std::uint32_t kGlbBinaryChunk = 0x004E4942;  ///< "BIN\0"
 
 /// Views into the file's bytes.

@@ -44,21 +44,28 @@ float decodeFloat(int componentType, bool normalized, const std::uint8_t* data) 
 
 std::uint32_t decodeIndex(int componentType, const std::uint8_t* data) {
   switch (componentType) {
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return load<std::uint8_t>(data);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return load<std::uint16_t>(data);
-    default: return load<std::uint32_t>(data);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+      return load<std::uint8_t>(data);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+      return load<std::uint16_t>(data);
+    default:
+      return load<std::uint32_t>(data);
   }
 }
 
 std::size_t componentSize(int componentType) {
   switch (componentType) {
     case TINYGLTF_COMPONENT_TYPE_BYTE:
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return 1;
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+      return 1;
     case TINYGLTF_COMPONENT_TYPE_SHORT:
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return 2;
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+      return 2;
     case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
-    case TINYGLTF_COMPONENT_TYPE_FLOAT: return 4;
-    default: return 0;
+    case TINYGLTF_COMPONENT_TYPE_FLOAT:
+      return 4;
+    default:
+      return 0;
   }
 }
 
@@ -73,21 +80,30 @@ bool isAllowed(int componentType, bool normalized, Integers integers) {
       componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE || componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT;
   const bool isSigned = componentType == TINYGLTF_COMPONENT_TYPE_BYTE || componentType == TINYGLTF_COMPONENT_TYPE_SHORT;
   switch (integers) {
-    case Integers::none: return false;
-    case Integers::normalizedUnsigned: return isUnsigned && normalized;
-    case Integers::normalizedSigned: return isSigned && normalized;
-    case Integers::any: return isUnsigned || isSigned;
+    case Integers::none:
+      return false;
+    case Integers::normalizedUnsigned:
+      return isUnsigned && normalized;
+    case Integers::normalizedSigned:
+      return isSigned && normalized;
+    case Integers::any:
+      return isUnsigned || isSigned;
   }
   return false;
 }
 
 int componentsOf(int type) {
   switch (type) {
-    case TINYGLTF_TYPE_SCALAR: return 1;
-    case TINYGLTF_TYPE_VEC2: return 2;
-    case TINYGLTF_TYPE_VEC3: return 3;
-    case TINYGLTF_TYPE_VEC4: return 4;
-    default: return 0;
+    case TINYGLTF_TYPE_SCALAR:
+      return 1;
+    case TINYGLTF_TYPE_VEC2:
+      return 2;
+    case TINYGLTF_TYPE_VEC3:
+      return 3;
+    case TINYGLTF_TYPE_VEC4:
+      return 4;
+    default:
+      return 0;
   }
 }
 
@@ -154,7 +170,8 @@ std::vector<Value> GltfAccessors::read(const tinygltf::Accessor& accessor, int c
     const std::size_t n = static_cast<std::size_t>(count);
     const Elements where = elements(sparse.indices.bufferView, static_cast<std::uint64_t>(indexOffset), n,
                                     componentSize(sparse.indices.componentType), false, what);
-    const Elements source = elements(sparse.values.bufferView, static_cast<std::uint64_t>(valueOffset), n, elementSize, false, what);
+    const Elements source =
+        elements(sparse.values.bufferView, static_cast<std::uint64_t>(valueOffset), n, elementSize, false, what);
     for (std::size_t i = 0; i < n; ++i) {
       const std::uint32_t target = decodeIndex(sparse.indices.componentType, where.data + i * where.stride);
       if (target >= accessor.count) fail(what, "has a sparse index out of range");
@@ -171,10 +188,10 @@ std::vector<float> GltfAccessors::floats(int index, int components, Integers int
     fail(what, "has component type " + std::to_string(accessor.componentType) + ", which is not allowed for it");
   auto values = read<float>(
       accessor, components,
-      [](const tinygltf::Accessor& a, const std::uint8_t* data) { return decodeFloat(a.componentType, a.normalized, data); }, what);
+      [](const tinygltf::Accessor& a, const std::uint8_t* data) { return decodeFloat(a.componentType, a.normalized, data); },
+      what);
   const auto bad = std::find_if_not(values.begin(), values.end(), [](float v) { return std::isfinite(v); });
-  if (bad != values.end())
-    fail(what, "is not finite at element " + std::to_string((bad - values.begin()) / components));
+  if (bad != values.end()) fail(what, "is not finite at element " + std::to_string((bad - values.begin()) / components));
   return values;
 }
 
@@ -182,7 +199,8 @@ std::vector<std::uint32_t> GltfAccessors::indices(int index, const std::string& 
   const auto& accessor = at(index, what);
   if (componentsOf(accessor.type) != 1 || !isIndexType(accessor.componentType)) fail(what, "is not an unsigned integer scalar");
   return read<std::uint32_t>(
-      accessor, 1, [](const tinygltf::Accessor& a, const std::uint8_t* data) { return decodeIndex(a.componentType, data); }, what);
+      accessor, 1, [](const tinygltf::Accessor& a, const std::uint8_t* data) { return decodeIndex(a.componentType, data); },
+      what);
 }
 
 std::vector<std::uint8_t> GltfAccessors::bufferView(int view, const std::string& what) const {

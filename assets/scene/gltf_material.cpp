@@ -104,7 +104,9 @@ class MaterialReader {
       material.occlusionStrength = within(source.occlusionTexture.strength, 0, 1, "occlusionTexture.strength");
       readEmission(source, material);
       material.emissiveTexture = texture(source.emissiveTexture);
-      material.alphaMode = source.alphaMode == "MASK" ? AlphaMode::mask : source.alphaMode == "BLEND" ? AlphaMode::blend : AlphaMode::opaque;
+      material.alphaMode = source.alphaMode == "MASK"    ? AlphaMode::mask
+                           : source.alphaMode == "BLEND" ? AlphaMode::blend
+                                                         : AlphaMode::opaque;
       material.alphaCutoff = static_cast<float>(source.alphaCutoff);
       material.doubleSided = source.doubleSided;
       readAnisotropy(source, material);
@@ -121,7 +123,8 @@ class MaterialReader {
       if (bytes.empty()) throw inputError(file.string(), "is empty", "");
       return bytes;
     } catch (const Error& error) {
-      throw inputError(path_.string(), label + " cannot be read (" + error.what() + ")", "put the image where the glTF file expects it");
+      throw inputError(path_.string(), label + " cannot be read (" + error.what() + ")",
+                       "put the image where the glTF file expects it");
     }
   }
 
@@ -134,10 +137,14 @@ class MaterialReader {
 
   Wrap wrap(int mode, const std::string& label) const {
     switch (mode) {
-      case TINYGLTF_TEXTURE_WRAP_REPEAT: return Wrap::repeat;
-      case TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT: return Wrap::mirroredRepeat;
-      case TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE: return Wrap::clampToEdge;
-      default: throw inputError(path_.string(), label + " has an unknown wrap mode " + std::to_string(mode), "export the file again");
+      case TINYGLTF_TEXTURE_WRAP_REPEAT:
+        return Wrap::repeat;
+      case TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT:
+        return Wrap::mirroredRepeat;
+      case TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE:
+        return Wrap::clampToEdge;
+      default:
+        throw inputError(path_.string(), label + " has an unknown wrap mode " + std::to_string(mode), "export the file again");
     }
   }
 
@@ -146,7 +153,8 @@ class MaterialReader {
     const int index = checked(info.index, scene_.textures.size(), label_ + " names texture ");
     if (index == kNone || scene_.textures[static_cast<std::size_t>(index)].image == kNone) return kNone;
     if (info.texCoord != 0) {
-      warnings_.say(label_ + " reads a texture through TEXCOORD_" + std::to_string(info.texCoord) + "; only TEXCOORD_0 is kept, so it is left out");
+      warnings_.say(label_ + " reads a texture through TEXCOORD_" + std::to_string(info.texCoord) +
+                    "; only TEXCOORD_0 is kept, so it is left out");
       return kNone;
     }
     if (info.extensions.count("KHR_texture_transform") != 0)
@@ -156,7 +164,8 @@ class MaterialReader {
 
   float within(double value, double lower, double upper, const char* what) {
     const double clamped = std::clamp(value, lower, upper);
-    if (clamped != value) warnings_.say(label_ + " has " + what + " " + std::to_string(value) + ", taken as " + std::to_string(clamped));
+    if (clamped != value)
+      warnings_.say(label_ + " has " + what + " " + std::to_string(value) + ", taken as " + std::to_string(clamped));
     return static_cast<float>(clamped);
   }
 

@@ -28,8 +28,8 @@ std::string named(const std::string& kind, int index, const std::string& name) {
 }
 
 /// Keeps encoded images. Those in buffer views are left alone: TinyGLTF does not check that these lie inside their buffer.
-bool keepEncoded(tinygltf::Image* image, const int index, std::string*, std::string*, int, int, const unsigned char* bytes, int size,
-                 void* user) {
+bool keepEncoded(tinygltf::Image* image, const int index, std::string*, std::string*, int, int, const unsigned char* bytes,
+                 int size, void* user) {
   auto& images = *static_cast<ImageBytes*>(user);
   if (image->bufferView >= 0 || index < 0) return true;
   if (images.size() <= static_cast<std::size_t>(index)) images.resize(static_cast<std::size_t>(index) + 1);
@@ -122,7 +122,8 @@ class SceneReader {
   void checkExtensions() {
     for (const auto& name : model_.extensionsRequired)
       if (kSupported.count(name) == 0)
-        throw inputError(where_, "requires the glTF extension " + name + ", which is not supported", "export it without that extension");
+        throw inputError(where_, "requires the glTF extension " + name + ", which is not supported",
+                         "export it without that extension");
     for (const auto& name : model_.extensionsUsed)
       if (kSupported.count(name) == 0) warnings_.say("the glTF extension " + name + " is ignored");
     quantized_ = std::count(model_.extensionsUsed.begin(), model_.extensionsUsed.end(), "KHR_mesh_quantization") != 0;
@@ -202,7 +203,8 @@ class SceneReader {
       warnings_.say(label + " is made of points or lines and left out");
       return false;
     }
-    if (mode > TINYGLTF_MODE_TRIANGLE_FAN) throw inputError(where_, label + " has an unknown mode " + std::to_string(mode), "export it again");
+    if (mode > TINYGLTF_MODE_TRIANGLE_FAN)
+      throw inputError(where_, label + " has an unknown mode " + std::to_string(mode), "export it again");
     const auto accessor = [&](const char* name) {
       const auto found = source.attributes.find(name);
       return found == source.attributes.end() ? kNone : found->second;
@@ -212,14 +214,16 @@ class SceneReader {
       return false;
     }
     if (source.material != -1 && (source.material < 0 || static_cast<std::size_t>(source.material) >= model_.materials.size()))
-      throw inputError(where_, label + " names material " + std::to_string(source.material) + ", which does not exist", "export it again");
+      throw inputError(where_, label + " names material " + std::to_string(source.material) + ", which does not exist",
+                       "export it again");
     out.material = source.material == -1 ? kNone : source.material;
 
     const Integers direction = quantized_ ? Integers::normalizedSigned : Integers::none;
     read(accessor("POSITION"), quantized_ ? Integers::any : Integers::none, label + ": POSITION", out.positions);
     read(accessor("NORMAL"), direction, label + ": NORMAL", out.normals);
     read(accessor("TANGENT"), direction, label + ": TANGENT", out.tangents);
-    read(accessor("TEXCOORD_0"), quantized_ ? Integers::any : Integers::normalizedUnsigned, label + ": TEXCOORD_0", out.texcoords);
+    read(accessor("TEXCOORD_0"), quantized_ ? Integers::any : Integers::normalizedUnsigned, label + ": TEXCOORD_0",
+         out.texcoords);
     const std::size_t count = out.positions.size();
     requireSameCount(out.normals.size(), count, label + ": NORMAL");
     requireSameCount(out.tangents.size(), count, label + ": TANGENT");
@@ -244,10 +248,13 @@ class SceneReader {
     }
     for (std::size_t i = 0; i < indices.size(); ++i)
       if (indices[i] >= out.positions.size())
-        throw inputError(where_, label + ": index " + std::to_string(i) + " is " + std::to_string(indices[i]) + ", but there are only " +
-                                     std::to_string(out.positions.size()) + " vertices", "export it again");
+        throw inputError(where_,
+                         label + ": index " + std::to_string(i) + " is " + std::to_string(indices[i]) + ", but there are only " +
+                             std::to_string(out.positions.size()) + " vertices",
+                         "export it again");
     if (mode == TINYGLTF_MODE_TRIANGLES && indices.size() % 3 != 0)
-      throw inputError(where_, label + " has " + std::to_string(indices.size()) + " indices, which is not a multiple of 3", "export it again");
+      throw inputError(where_, label + " has " + std::to_string(indices.size()) + " indices, which is not a multiple of 3",
+                       "export it again");
     out.indices = triangleList(indices, mode);
   }
 
@@ -262,7 +269,8 @@ class SceneReader {
 
   void requireSameCount(std::size_t found, std::size_t expected, const std::string& what) const {
     if (found != 0 && found != expected)
-      throw inputError(where_, what + " has " + std::to_string(found) + " elements for " + std::to_string(expected) + " vertices", "export it again");
+      throw inputError(where_, what + " has " + std::to_string(found) + " elements for " + std::to_string(expected) + " vertices",
+                       "export it again");
   }
 
   void warnAboutOthers(const tinygltf::Primitive& source, const std::string& label) {
@@ -277,14 +285,16 @@ class SceneReader {
     if (world != glm::dmat4(1.0)) {
       const glm::dmat3 linear(world);
       // The cofactor matrix is the inverse transpose times the determinant, and exists for every scale.
-      const glm::dmat3 cofactor(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]), glm::cross(linear[0], linear[1]));
+      const glm::dmat3 cofactor(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]),
+                                glm::cross(linear[0], linear[1]));
       const double sign = glm::determinant(linear) < 0.0 ? -1.0 : 1.0;
       for (auto& position : primitive.positions) position = glm::vec3(world * glm::dvec4(position, 1.0));
       for (auto& normal : primitive.normals) normal = direction(sign * (cofactor * glm::dvec3(normal)));
       for (auto& tangent : primitive.tangents)
         tangent = glm::vec4(direction(linear * glm::dvec3(tangent)), static_cast<float>(sign) * tangent.w);
       if (sign < 0.0)
-        for (std::size_t i = 0; i + 2 < primitive.indices.size(); i += 3) std::swap(primitive.indices[i + 1], primitive.indices[i + 2]);
+        for (std::size_t i = 0; i + 2 < primitive.indices.size(); i += 3)
+          std::swap(primitive.indices[i + 1], primitive.indices[i + 2]);
     }
     for (const auto& p : primitive.positions)
       if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
@@ -317,7 +327,8 @@ class SceneReader {
 
   void addCamera(const tinygltf::Node& node, const std::string& label, const glm::dmat4& world) {
     if (node.camera < 0 || static_cast<std::size_t>(node.camera) >= model_.cameras.size())
-      throw inputError(where_, label + " names camera " + std::to_string(node.camera) + ", which does not exist", "export it again");
+      throw inputError(where_, label + " names camera " + std::to_string(node.camera) + ", which does not exist",
+                       "export it again");
     const auto& source = model_.cameras[static_cast<std::size_t>(node.camera)];
     Camera camera;
     camera.name = source.name.empty() ? node.name : source.name;
@@ -326,7 +337,8 @@ class SceneReader {
     if (camera.perspective) {
       camera.verticalFov = static_cast<float>(source.perspective.yfov);
       camera.nearPlane = static_cast<float>(source.perspective.znear);
-      camera.farPlane = source.perspective.zfar > 0.0 ? static_cast<float>(source.perspective.zfar) : std::numeric_limits<float>::infinity();
+      camera.farPlane =
+          source.perspective.zfar > 0.0 ? static_cast<float>(source.perspective.zfar) : std::numeric_limits<float>::infinity();
     } else {
       camera.verticalExtent = static_cast<float>(source.orthographic.ymag);
       camera.nearPlane = static_cast<float>(source.orthographic.znear);
@@ -354,14 +366,16 @@ class SceneReader {
     const glm::dvec3 b(back);
     glm::dvec3 up = linear[1] - glm::dot(linear[1], b) * b;
     up = glm::normalize(up);
-    return glm::mat4(glm::vec4(glm::vec3(glm::cross(up, b)), 0), glm::vec4(glm::vec3(up), 0), glm::vec4(back, 0), glm::vec4(world[3]));
+    return glm::mat4(glm::vec4(glm::vec3(glm::cross(up, b)), 0), glm::vec4(glm::vec3(up), 0), glm::vec4(back, 0),
+                     glm::vec4(world[3]));
   }
 
   void limitInfiniteCameras() {
     const Bounds bounds = boundsOf(scene_);
     for (auto& camera : scene_.cameras) {
       if (std::isfinite(camera.farPlane)) continue;
-      const float reach = bounds.empty() ? 0.0f : glm::length(glm::vec3(camera.worldFromCamera[3]) - bounds.center()) + bounds.diagonal();
+      const float reach =
+          bounds.empty() ? 0.0f : glm::length(glm::vec3(camera.worldFromCamera[3]) - bounds.center()) + bounds.diagonal();
       camera.farPlane = std::max(reach, 10.0f * camera.nearPlane);
     }
   }
@@ -377,9 +391,12 @@ class SceneReader {
     const std::string name = source.Has("name") && source.Get("name").IsString() ? source.Get("name").Get<std::string>() : "";
     Light light;
     light.name = name;
-    if (type == "point") light.type = LightType::point;
-    else if (type == "spot") light.type = LightType::spot;
-    else if (type != "directional") throw inputError(where_, named("light", index, name) + " has an unknown type \"" + type + "\"", "export it again");
+    if (type == "point")
+      light.type = LightType::point;
+    else if (type == "spot")
+      light.type = LightType::spot;
+    else if (type != "directional")
+      throw inputError(where_, named("light", index, name) + " has an unknown type \"" + type + "\"", "export it again");
     if (source.Has("color") && source.Get("color").ArrayLen() == 3)
       for (int c = 0; c < 3; ++c) light.color[c] = static_cast<float>(source.Get("color").Get(c).GetNumberAsDouble());
     light.intensity = static_cast<float>(gltfNumber(source, "intensity", 1.0));
@@ -398,7 +415,8 @@ class SceneReader {
   void requireSaneLight(const Light& light, const std::string& label) const {
     const bool colorOk = light.color.x >= 0.0f && light.color.y >= 0.0f && light.color.z >= 0.0f &&
                          std::isfinite(light.color.x + light.color.y + light.color.z);
-    const bool coneOk = light.innerConeAngle >= 0.0f && light.innerConeAngle < light.outerConeAngle && light.outerConeAngle <= 1.5707964f;
+    const bool coneOk =
+        light.innerConeAngle >= 0.0f && light.innerConeAngle < light.outerConeAngle && light.outerConeAngle <= 1.5707964f;
     if (!colorOk || !coneOk || !(light.intensity >= 0.0f) || !std::isfinite(light.intensity) || !(light.range > 0.0f))
       throw inputError(where_, label + " has a colour, intensity, range or cone out of range", "export it again");
   }

@@ -16,7 +16,8 @@ namespace {
 
 std::string lowerCaseExtension(const std::filesystem::path& path) {
   std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return extension;
 }
 
@@ -25,7 +26,10 @@ Scene load(const std::filesystem::path& path, const WarningHandler& warn) {
   const std::string extension = lowerCaseExtension(path);
   const bool isGltf = extension == ".gltf" || extension == ".glb";
   if (!isGltf && extension != ".obj" && extension != ".ply" && extension != ".off" && extension != ".stl")
-    throw inputError(path.string(), extension.empty() ? "has no file extension to tell its format by" : "has the unknown file extension " + extension, kRemedy);
+    throw inputError(
+        path.string(),
+        extension.empty() ? "has no file extension to tell its format by" : "has the unknown file extension " + extension,
+        kRemedy);
   const auto bytes = readFile(path);
   if (bytes.empty()) throw inputError(path.string(), "is empty", "name a scene");
   if (isGltf) return readGltfScene(bytes, path, warn);

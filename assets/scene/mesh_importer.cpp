@@ -11,9 +11,7 @@ namespace {
 constexpr std::size_t kMostVertices = 0x7FFFFFFF;  // OpenMesh's handles are int
 
 /// Twice the signed area of a projected triangle.
-double cross2(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c) {
-  return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
-}
+double cross2(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c) { return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x); }
 
 /// Projects a polygon along the axis its area is largest in (Newell's normal), keeping it counter-clockwise.
 std::vector<glm::dvec2> flatten(const std::vector<glm::dvec3>& polygon) {
@@ -36,14 +34,17 @@ std::vector<glm::dvec2> flatten(const std::vector<glm::dvec3>& polygon) {
 
 std::size_t MeshImporter::checked(OpenMesh::VertexHandle vertex) const {
   if (vertex.idx() < 0 || static_cast<std::size_t>(vertex.idx()) >= positions_.size())
-    throw inputError(where_, "face " + std::to_string(polygons_) + " names vertex " + std::to_string(vertex.idx()) + ", but there are only " +
-                                 std::to_string(positions_.size()), "export the mesh again");
+    throw inputError(where_,
+                     "face " + std::to_string(polygons_) + " names vertex " + std::to_string(vertex.idx()) +
+                         ", but there are only " + std::to_string(positions_.size()),
+                     "export the mesh again");
   return static_cast<std::size_t>(vertex.idx());
 }
 
 glm::vec3 MeshImporter::checked(const OpenMesh::Vec3f& v, const char* what) const {
   if (!std::isfinite(v[0]) || !std::isfinite(v[1]) || !std::isfinite(v[2]))
-    throw inputError(where_, std::string("a ") + what + " near vertex " + std::to_string(positions_.size()) + " is not finite", "export the mesh again");
+    throw inputError(where_, std::string("a ") + what + " near vertex " + std::to_string(positions_.size()) + " is not finite",
+                     "export the mesh again");
   return {v[0], v[1], v[2]};
 }
 
@@ -82,7 +83,8 @@ void MeshImporter::set_normal(OpenMesh::VertexHandle vertex, const OpenMesh::Vec
 }
 
 void MeshImporter::set_normal(OpenMesh::VertexHandle vertex, const OpenMesh::Vec3d& normal) {
-  set_normal(vertex, OpenMesh::Vec3f(static_cast<float>(normal[0]), static_cast<float>(normal[1]), static_cast<float>(normal[2])));
+  set_normal(vertex,
+             OpenMesh::Vec3f(static_cast<float>(normal[0]), static_cast<float>(normal[1]), static_cast<float>(normal[2])));
 }
 
 void MeshImporter::set_texcoord(OpenMesh::VertexHandle vertex, const OpenMesh::Vec2f& texcoord) {
@@ -107,8 +109,10 @@ OpenMesh::FaceHandle MeshImporter::add_face(const VHandles& vertices) {
     polygon.push_back(found != pending_.end() ? *found : Corner{static_cast<std::uint32_t>(index)});
   }
   pending_.clear();
-  if (polygon.size() < 3) ++smallPolygons_;
-  else triangulate(polygon);
+  if (polygon.size() < 3)
+    ++smallPolygons_;
+  else
+    triangulate(polygon);
   return OpenMesh::FaceHandle(static_cast<int>(polygons_++));
 }
 
@@ -129,8 +133,8 @@ void MeshImporter::triangulate(const std::vector<Corner>& polygon) {
       const std::size_t a = left[(i + n - 1) % n], b = left[i], c = left[(i + 1) % n];
       if (!(cross2(flat[a], flat[b], flat[c]) > 0.0)) return false;
       return std::none_of(left.begin(), left.end(), [&](std::size_t p) {
-        return p != a && p != b && p != c && cross2(flat[a], flat[b], flat[p]) >= 0.0 && cross2(flat[b], flat[c], flat[p]) >= 0.0 &&
-               cross2(flat[c], flat[a], flat[p]) >= 0.0;
+        return p != a && p != b && p != c && cross2(flat[a], flat[b], flat[p]) >= 0.0 &&
+               cross2(flat[b], flat[c], flat[p]) >= 0.0 && cross2(flat[c], flat[a], flat[p]) >= 0.0;
       });
     };
     // Clipping starts behind the last ear, which makes fans of convex polygons in linear time.

@@ -30,8 +30,8 @@ class MeshImporter final : public OpenMesh::IO::BaseImporter {
   bool attributesPerCorner = false;
 
   const std::vector<glm::vec3>& positions() const { return positions_; }
-  std::vector<glm::vec3>& normals() { return normals_; }       ///< empty or per vertex
-  std::vector<glm::vec2>& texcoords() { return texcoords_; }   ///< empty or per vertex, as in the file (v up)
+  std::vector<glm::vec3>& normals() { return normals_; }      ///< empty or per vertex
+  std::vector<glm::vec2>& texcoords() { return texcoords_; }  ///< empty or per vertex, as in the file (v up)
   /// 3 per triangle, with attributes when attributesPerCorner.
   const std::vector<Corner>& corners() const { return corners_; }
   /// For each triangle, the number of the polygon (add_face call) it comes from.
@@ -52,7 +52,9 @@ class MeshImporter final : public OpenMesh::IO::BaseImporter {
   std::size_t n_edges() const override { return 0; }
 
   // Nothing of the following is kept.
-  OpenMesh::HalfedgeHandle add_edge(OpenMesh::VertexHandle, OpenMesh::VertexHandle) override { return OpenMesh::HalfedgeHandle(); }
+  OpenMesh::HalfedgeHandle add_edge(OpenMesh::VertexHandle, OpenMesh::VertexHandle) override {
+    return OpenMesh::HalfedgeHandle();
+  }
   OpenMesh::FaceHandle add_face(OpenMesh::HalfedgeHandle) override { return OpenMesh::FaceHandle(); }
   void add_face_texcoords(OpenMesh::FaceHandle, OpenMesh::VertexHandle, const std::vector<OpenMesh::Vec2f>&) override {}
   void add_face_texcoords(OpenMesh::FaceHandle, OpenMesh::VertexHandle, const std::vector<OpenMesh::Vec3f>&) override {}

@@ -23,7 +23,8 @@ Scene sceneFromMesh(MeshImporter& importer, const std::string& name, Warnings& w
   for (auto& texcoord : primitive.texcoords) texcoord.y = 1.0f - texcoord.y;
   primitive.indices.reserve(importer.corners().size());
   for (const auto& corner : importer.corners()) primitive.indices.push_back(corner.vertex);
-  if (importer.smallPolygons() != 0) warnings.say(std::to_string(importer.smallPolygons()) + " faces with fewer than three vertices are left out");
+  if (importer.smallPolygons() != 0)
+    warnings.say(std::to_string(importer.smallPolygons()) + " faces with fewer than three vertices are left out");
   if (const auto replaced = normalizeNormals(primitive); replaced != 0)
     warnings.say(std::to_string(replaced) + " normals of zero length are computed from the triangles");
 

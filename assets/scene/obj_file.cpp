@@ -79,7 +79,9 @@ class ObjCheck {
     if (!joined.empty()) action(trimmed(joined));
   }
 
-  Error fail(const std::string& problem) const { return inputError(where_ + ":" + std::to_string(line_), problem, "export the mesh again"); }
+  Error fail(const std::string& problem) const {
+    return inputError(where_ + ":" + std::to_string(line_), problem, "export the mesh again");
+  }
 
   void countVertices(std::string_view all) {
     forEachLine(all, [&](std::string_view line) {
@@ -141,7 +143,8 @@ class ObjCheck {
     long index = 0;
     if (!parse(word, index)) throw fail("\"" + std::string(word) + "\" is not an index");
     if (index < 0) index += soFar + 1;
-    if (index < 1 || index > all) throw fail(std::string("a face names ") + kind + " " + std::string(word) + ", but there are only " + std::to_string(all));
+    if (index < 1 || index > all)
+      throw fail(std::string("a face names ") + kind + " " + std::string(word) + ", but there are only " + std::to_string(all));
     return index;
   }
 
@@ -186,7 +189,9 @@ struct CornerKey {
   glm::vec2 texcoord;
   glm::vec3 normal;
 
-  bool operator==(const CornerKey& other) const { return vertex == other.vertex && texcoord == other.texcoord && normal == other.normal; }
+  bool operator==(const CornerKey& other) const {
+    return vertex == other.vertex && texcoord == other.texcoord && normal == other.normal;
+  }
 };
 
 struct CornerHash {
@@ -241,8 +246,10 @@ Scene readObjScene(std::span<const std::uint8_t> bytes, const std::filesystem::p
   for (const auto& library : check.libraries) {
     std::error_code error;
     const auto file = path.parent_path() / library;
-    if (std::filesystem::is_regular_file(file, error)) readMaterialLibrary(file, warnings, scene, byName);
-    else warnings.say("its material library " + library + " does not exist: the default material is used");
+    if (std::filesystem::is_regular_file(file, error))
+      readMaterialLibrary(file, warnings, scene, byName);
+    else
+      warnings.say("its material library " + library + " does not exist: the default material is used");
   }
 
   std::map<int, std::vector<std::size_t>> trianglesOf;
@@ -257,7 +264,8 @@ Scene readObjScene(std::span<const std::uint8_t> bytes, const std::filesystem::p
     if (const auto found = byName.find(material); found != byName.end()) {
       primitive.material = found->second;
     } else {
-      if (!material.empty() && !byName.empty()) warnings.say("material " + material + " is not in its library: the default material is used");
+      if (!material.empty() && !byName.empty())
+        warnings.say("material " + material + " is not in its library: the default material is used");
       if (defaultMaterial == kNone) {
         defaultMaterial = static_cast<int>(scene.materials.size());
         scene.materials.push_back(defaultMeshMaterial());

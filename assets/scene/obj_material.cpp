@@ -32,7 +32,8 @@ int addTexture(const std::filesystem::path& file, const std::string& where, Scen
   try {
     image.bytes = readFile(file);
   } catch (const Error& error) {
-    throw inputError(where, std::string("its texture cannot be read (") + error.what() + ")", "put the image where the material expects it");
+    throw inputError(where, std::string("its texture cannot be read (") + error.what() + ")",
+                     "put the image where the material expects it");
   }
   decodedSize(image.bytes, file.string());
   image.mimeType = image.bytes[0] == 0x89 ? "image/png" : "image/jpeg";
@@ -58,7 +59,8 @@ void setOpacity(Material& material, float opacity) {
 
 }  // namespace
 
-void readMaterialLibrary(const std::filesystem::path& path, Warnings& warnings, Scene& scene, std::map<std::string, int>& byName) {
+void readMaterialLibrary(const std::filesystem::path& path, Warnings& warnings, Scene& scene,
+                         std::map<std::string, int>& byName) {
   const auto bytes = readFile(path);
   std::istringstream lines(std::string(bytes.begin(), bytes.end()));
   std::map<std::string, int> textures;

@@ -85,7 +85,9 @@ void readOff(std::span<const std::uint8_t> bytes, const std::string& where, Mesh
   const auto vertexCount = lines.number<std::uint32_t>(first);
   const auto faceCount = lines.number<std::uint32_t>(first + 1);
   if (vertexCount > lines.bytesLeft() / 6 || faceCount > lines.bytesLeft() / 2)
-    throw inputError(where, "is truncated: " + std::to_string(vertexCount) + " vertices and " + std::to_string(faceCount) + " faces do not fit into it",
+    throw inputError(where,
+                     "is truncated: " + std::to_string(vertexCount) + " vertices and " + std::to_string(faceCount) +
+                         " faces do not fit into it",
                      "export the mesh again");
 
   // OpenMesh's text reader takes a face line's colour for the next face; it gets positions and indices only.
@@ -107,16 +109,19 @@ void readOff(std::span<const std::uint8_t> bytes, const std::string& where, Mesh
     if (corners >= words.size()) throw lines.fail("a face has too few vertices");
     plain.append(words[0]);
     for (std::size_t c = 1; c <= corners; ++c) {
-      if (lines.number<std::uint32_t>(c) >= vertexCount) throw lines.fail("a face names vertex " + std::string(words[c]) + " of " + std::to_string(vertexCount));
+      if (lines.number<std::uint32_t>(c) >= vertexCount)
+        throw lines.fail("a face names vertex " + std::string(words[c]) + " of " + std::to_string(vertexCount));
       plain.append(" ").append(words[c]);
     }
     plain.append("\n");
   }
   runReader(OpenMesh::IO::OFFReader(), std::move(plain), OpenMesh::IO::Options::Default, StreamChecks::strict, where, importer);
   for (std::size_t i = 0; i < vertexNormals.size(); ++i)
-    importer.set_normal(OpenMesh::VertexHandle(static_cast<int>(i)), OpenMesh::Vec3f(vertexNormals[i].x, vertexNormals[i].y, vertexNormals[i].z));
+    importer.set_normal(OpenMesh::VertexHandle(static_cast<int>(i)),
+                        OpenMesh::Vec3f(vertexNormals[i].x, vertexNormals[i].y, vertexNormals[i].z));
   for (std::size_t i = 0; i < vertexTexcoords.size(); ++i)
-    importer.set_texcoord(OpenMesh::VertexHandle(static_cast<int>(i)), OpenMesh::Vec2f(vertexTexcoords[i].x, vertexTexcoords[i].y));
+    importer.set_texcoord(OpenMesh::VertexHandle(static_cast<int>(i)),
+                          OpenMesh::Vec2f(vertexTexcoords[i].x, vertexTexcoords[i].y));
 }
 
 }  // namespace chiaro

@@ -40,8 +40,10 @@ void runReader(OpenMesh::IO::BaseReader& reader, std::string content, OpenMesh::
     ok = false;
   }
   if (!ok)
-    throw inputError(where, "is truncated or malformed after " + std::to_string(importer.n_vertices()) + " vertices and " +
-                                std::to_string(importer.n_faces()) + " faces", "export the mesh again");
+    throw inputError(where,
+                     "is truncated or malformed after " + std::to_string(importer.n_vertices()) + " vertices and " +
+                         std::to_string(importer.n_faces()) + " faces",
+                     "export the mesh again");
 }
 
 }  // namespace chiaro

@@ -51,7 +51,9 @@ std::string commonName(const std::string& name) {
 }
 
 Header parseHeader(std::string_view text, const std::string& where) {
-  const auto fail = [&](const std::string& problem) { return inputError(where, "its PLY header " + problem, "export the mesh again"); };
+  const auto fail = [&](const std::string& problem) {
+    return inputError(where, "its PLY header " + problem, "export the mesh again");
+  };
   Header header;
   std::size_t offset = 0;
   for (int lineNumber = 0;; ++lineNumber) {
@@ -100,7 +102,9 @@ bool isVertexIndices(const Property& property) { return property.name == "vertex
 
 /// Refuses what OpenMesh's reader would silently read wrong.
 void requireReadable(const Header& header, std::size_t bodySize, const std::string& where) {
-  const auto fail = [&](const std::string& problem) { return inputError(where, problem, "export the mesh again, as plain triangles"); };
+  const auto fail = [&](const std::string& problem) {
+    return inputError(where, problem, "export the mesh again, as plain triangles");
+  };
   if (header.format != "ascii" && header.format != "binary_little_endian" && header.format != "binary_big_endian")
     throw fail("has an unknown PLY format \"" + header.format + "\"");
   bool sawVertices = false, sawFaces = false;
@@ -115,7 +119,8 @@ void requireReadable(const Header& header, std::size_t bodySize, const std::stri
       const bool ascii = header.format == "ascii";
       size += ascii ? 1 : typeSizes().at(property.isList ? property.countType : property.type);
       if (property.isList) {
-        if (!isFace || !isVertexIndices(property)) throw fail("has a list \"" + property.name + "\" in its " + element.name + " element, which is not supported");
+        if (!isFace || !isVertexIndices(property))
+          throw fail("has a list \"" + property.name + "\" in its " + element.name + " element, which is not supported");
         if (isFloat(property)) throw fail("has vertex indices of type " + property.type);
         sawIndices = true;
       } else if (isVertex && (property.name == "x" || property.name == "y" || property.name == "z")) {
@@ -125,7 +130,8 @@ void requireReadable(const Header& header, std::size_t bodySize, const std::stri
     }
     if (isVertex && coordinates != 3) throw fail("has no x, y and z for its vertices");
     if (isFace && !sawIndices) throw fail("has faces without vertex indices");
-    if (isFace && !isVertexIndices(element.properties.front())) throw fail("has face properties before the vertex indices, which is not supported");
+    if (isFace && !isVertexIndices(element.properties.front()))
+      throw fail("has face properties before the vertex indices, which is not supported");
     // Bounds the memory that a corrupt count could ask for.
     if (size > 0 && element.count > (bodySize - std::min<std::uint64_t>(smallest, bodySize)) / size)
       throw fail("is truncated: " + std::to_string(element.count) + " \"" + element.name + "\" elements do not fit into it");

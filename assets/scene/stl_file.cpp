@@ -67,11 +67,14 @@ void readStl(std::span<const std::uint8_t> bytes, const std::string& where, Mesh
   } else if (text.substr(0, 5) == "solid" && text.find("facet") != std::string_view::npos) {
     requireWholeText(text, where);
   } else {
-    throw inputError(where, "is neither a text STL file nor a whole binary one (" + std::to_string(count) + " triangles take " +
-                                std::to_string(kBinaryHeader + kBinaryTriangle * count) + " bytes, it has " + std::to_string(bytes.size()) + ")",
+    throw inputError(where,
+                     "is neither a text STL file nor a whole binary one (" + std::to_string(count) + " triangles take " +
+                         std::to_string(kBinaryHeader + kBinaryTriangle * count) + " bytes, it has " +
+                         std::to_string(bytes.size()) + ")",
                      "export the mesh again");
   }
-  runReader(OpenMesh::IO::STLReader(), std::string(text), options, binary ? StreamChecks::strict : StreamChecks::lenient, where, importer);
+  runReader(OpenMesh::IO::STLReader(), std::string(text), options, binary ? StreamChecks::strict : StreamChecks::lenient, where,
+            importer);
 }
 
 }  // namespace chiaro

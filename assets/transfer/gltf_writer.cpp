@@ -33,7 +33,8 @@ Json list(const glm::vec<Size, float>& v) {
 Json list(const glm::mat4& m) {
   Json out = Json::array();
   for (int c = 0; c < 4; ++c)
-    for (int r = 0; r < 4; ++r) out.push_back(m[c][r] + 0.0f);  // no -0: the product of transforms that a reader forms loses its sign
+    for (int r = 0; r < 4; ++r)
+      out.push_back(m[c][r] + 0.0f);  // no -0: the product of transforms that a reader forms loses its sign
   return out;
 }
 
@@ -64,10 +65,14 @@ class SceneWriter {
   void writeTextures() {
     for (const auto& texture : scene_.textures) {
       Json out = Json::object();
-      Json sampler{{"magFilter", texture.nearest ? 9728 : 9729}, {"minFilter", 9987}, {"wrapS", wrap(texture.wrapS)}, {"wrapT", wrap(texture.wrapT)}};
+      Json sampler{{"magFilter", texture.nearest ? 9728 : 9729},
+                   {"minFilter", 9987},
+                   {"wrapS", wrap(texture.wrapS)},
+                   {"wrapT", wrap(texture.wrapT)}};
       const auto& known = json_["samplers"];
       const auto found = std::find(known.begin(), known.end(), sampler);
-      out["sampler"] = found != known.end() ? static_cast<int>(found - known.begin()) : push(json_, "samplers", std::move(sampler));
+      out["sampler"] =
+          found != known.end() ? static_cast<int>(found - known.begin()) : push(json_, "samplers", std::move(sampler));
       if (texture.image != kNone) out["source"] = texture.image;
       push(json_, "textures", std::move(out));
     }
@@ -85,7 +90,8 @@ class SceneWriter {
       if (!material.name.empty()) out["name"] = material.name;
       out["pbrMetallicRoughness"] = std::move(pbr);
       if (addTexture(out, "normalTexture", material.normalTexture)) out["normalTexture"]["scale"] = material.normalScale;
-      if (addTexture(out, "occlusionTexture", material.occlusionTexture)) out["occlusionTexture"]["strength"] = material.occlusionStrength;
+      if (addTexture(out, "occlusionTexture", material.occlusionTexture))
+        out["occlusionTexture"]["strength"] = material.occlusionStrength;
       addTexture(out, "emissiveTexture", material.emissiveTexture);
       writeEmission(material, out);
       if (material.alphaMode == AlphaMode::mask) out["alphaMode"] = "MASK", out["alphaCutoff"] = material.alphaCutoff;
@@ -114,7 +120,8 @@ class SceneWriter {
       const std::string label = "mesh " + (name.empty() ? std::to_string(json_["meshes"].size() - 1) : name) + ", primitive " +
                                 std::to_string(mesh["primitives"].size());
       mesh["primitives"].push_back(primitiveJson(primitive, label));
-      places.emplace_back("/meshes/" + std::to_string(json_["meshes"].size() - 1) + "/primitives/" + std::to_string(mesh["primitives"].size() - 1));
+      places.emplace_back("/meshes/" + std::to_string(json_["meshes"].size() - 1) + "/primitives/" +
+                          std::to_string(mesh["primitives"].size() - 1));
     }
     return places;
   }
@@ -128,7 +135,10 @@ class SceneWriter {
         out["perspective"] = {{"yfov", camera.verticalFov}, {"znear", camera.nearPlane}, {"zfar", camera.farPlane}};
       } else {
         out["type"] = "orthographic";
-        out["orthographic"] = {{"xmag", camera.verticalExtent}, {"ymag", camera.verticalExtent}, {"znear", camera.nearPlane}, {"zfar", camera.farPlane}};
+        out["orthographic"] = {{"xmag", camera.verticalExtent},
+                               {"ymag", camera.verticalExtent},
+                               {"znear", camera.nearPlane},
+                               {"zfar", camera.farPlane}};
       }
       node["camera"] = push(json_, "cameras", std::move(out));
       addMatrix(node, camera.worldFromCamera);
@@ -149,7 +159,8 @@ class SceneWriter {
       out["color"] = list(light.color / scale);
       out["intensity"] = light.intensity * scale;
       if (light.type != LightType::directional && std::isfinite(light.range)) out["range"] = light.range;
-      if (light.type == LightType::spot) out["spot"] = {{"innerConeAngle", light.innerConeAngle}, {"outerConeAngle", light.outerConeAngle}};
+      if (light.type == LightType::spot)
+        out["spot"] = {{"innerConeAngle", light.innerConeAngle}, {"outerConeAngle", light.outerConeAngle}};
       node["extensions"]["KHR_lights_punctual"]["light"] = lights.size();
       lights.push_back(std::move(out));
       addMatrix(node, poseOf(light));
@@ -196,7 +207,8 @@ class SceneWriter {
     Json attributes = Json::object();
     const auto vertexArray = [&](const char* name, const auto& values, const char* type) {
       if (values.empty()) return;
-      attributes[name] = writer_.addAccessor(writer_.addArray(values, name + (" of " + label), Target::vertices), kFloat, type, count);
+      attributes[name] =
+          writer_.addAccessor(writer_.addArray(values, name + (" of " + label), Target::vertices), kFloat, type, count);
     };
     vertexArray("POSITION", primitive.positions, "VEC3");
     glm::vec3 lower = primitive.positions.front(), upper = lower;
@@ -219,9 +231,11 @@ class SceneWriter {
     using Target = GltfWriter::Target;
     // 65535 is no index in 16 bits: it restarts strips (glTF 2.0, 3.7.2.1).
     if (primitive.positions.size() > 65535)
-      return writer_.addAccessor(writer_.addArray(primitive.indices, "indices of " + label, Target::indices), kUnsignedInt, "SCALAR", primitive.indices.size());
+      return writer_.addAccessor(writer_.addArray(primitive.indices, "indices of " + label, Target::indices), kUnsignedInt,
+                                 "SCALAR", primitive.indices.size());
     const std::vector<std::uint16_t> narrow(primitive.indices.begin(), primitive.indices.end());
-    return writer_.addAccessor(writer_.addArray(narrow, "indices of " + label, Target::indices), kUnsignedShort, "SCALAR", narrow.size());
+    return writer_.addAccessor(writer_.addArray(narrow, "indices of " + label, Target::indices), kUnsignedShort, "SCALAR",
+                               narrow.size());
   }
 
   static glm::mat4 poseOf(const Light& light) {
@@ -229,7 +243,8 @@ class SceneWriter {
     const glm::dvec3 helper = std::abs(back.y) > 0.9 * glm::length(back) ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
     const glm::dvec3 right = glm::normalize(glm::cross(helper, back));
     const glm::dvec3 up = glm::normalize(glm::cross(back, right));
-    return {glm::vec4(glm::vec3(right), 0), glm::vec4(glm::vec3(up), 0), glm::vec4(-light.direction, 0), glm::vec4(light.position, 1)};
+    return {glm::vec4(glm::vec3(right), 0), glm::vec4(glm::vec3(up), 0), glm::vec4(-light.direction, 0),
+            glm::vec4(light.position, 1)};
   }
 
   static void addMatrix(Json& node, const glm::mat4& matrix) {
@@ -287,7 +302,8 @@ std::vector<std::uint8_t> GltfWriter::container(const std::string& json, const s
 std::vector<std::size_t> primitiveOrder(const Scene& scene) {
   std::vector<std::size_t> order(scene.primitives.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return scene.primitives[a].mesh < scene.primitives[b].mesh; });
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return scene.primitives[a].mesh < scene.primitives[b].mesh; });
   return order;
 }
 

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <new>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "assets/error.h"
@@ -24,7 +24,8 @@ constexpr std::int64_t kShort = 5122, kUnsignedByte = 5121;
 
 class BakedReader {
  public:
-  BakedReader(std::span<const std::uint8_t> bytes, const std::filesystem::path& path) : bytes_(bytes), path_(path), where_(path.string()) {}
+  BakedReader(std::span<const std::uint8_t> bytes, const std::filesystem::path& path)
+      : bytes_(bytes), path_(path), where_(path.string()) {}
 
   BakedScene read() {
     openContainer();
@@ -63,11 +64,15 @@ class BakedReader {
     return object[name];
   }
 
-  std::int64_t integer(const json& object, const char* name, std::int64_t lower, std::int64_t upper, const std::string& owner) const {
+  std::int64_t integer(const json& object, const char* name, std::int64_t lower, std::int64_t upper,
+                       const std::string& owner) const {
     const json& value = member(object, name, owner);
-    const bool fits = value.is_number_unsigned() ? value.get<std::uint64_t>() <= static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max()) : value.is_number_integer();
+    const bool fits = value.is_number_unsigned()
+                          ? value.get<std::uint64_t>() <= static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max())
+                          : value.is_number_integer();
     if (!fits || value.get<std::int64_t>() < lower || value.get<std::int64_t>() > upper)
-      fail("\"" + std::string(name) + "\" of " + owner + " is not an integer from " + std::to_string(lower) + " to " + std::to_string(upper));
+      fail("\"" + std::string(name) + "\" of " + owner + " is not an integer from " + std::to_string(lower) + " to " +
+           std::to_string(upper));
     return value.get<std::int64_t>();
   }
 
@@ -84,13 +89,16 @@ class BakedReader {
   }
 
   void findExtension() {
-    if (!root_.contains("extensions") || !root_["extensions"].is_object() || !root_["extensions"].contains(kTransferExtension)) failUnbaked();
+    if (!root_.contains("extensions") || !root_["extensions"].is_object() || !root_["extensions"].contains(kTransferExtension))
+      failUnbaked();
     extension_ = &root_["extensions"][kTransferExtension];
     if (!extension_->is_object()) fail(std::string(kTransferExtension) + " is not an object");
     const std::int64_t version = integer(*extension_, "version", 0, std::numeric_limits<std::int32_t>::max(), kTransferExtension);
     if (version != kTransferVersion)
-      throw inputError(where_, "has transfer version " + std::to_string(version) + ", this program reads version " + std::to_string(kTransferVersion),
-                       version > kTransferVersion ? "update Chiaro" : "bake it again");
+      throw inputError(
+          where_,
+          "has transfer version " + std::to_string(version) + ", this program reads version " + std::to_string(kTransferVersion),
+          version > kTransferVersion ? "update Chiaro" : "bake it again");
     const std::string parameterization = text(*extension_, "parameterization", kTransferExtension);
     if (parameterization != kTransferParameterization) fail("has the unknown parameterization \"" + parameterization + "\"");
   }
@@ -122,18 +130,21 @@ class BakedReader {
       fail("its buffer and its BIN chunk have different lengths");
     const json& views = listOf(root_, "bufferViews", "the file");
     const json& sums = listOf(*extension_, "checksums", kTransferExtension);
-    if (sums.size() != views.size()) fail("has " + std::to_string(sums.size()) + " checksums for " + std::to_string(views.size()) + " buffer views");
+    if (sums.size() != views.size())
+      fail("has " + std::to_string(sums.size()) + " checksums for " + std::to_string(views.size()) + " buffer views");
     std::int64_t end = 0;
     for (std::size_t i = 0; i < views.size(); ++i) {
       const std::string label = viewLabel(i);
       const std::int64_t offset = integer(views[i], "byteOffset", 0, size, label);
       const std::int64_t length = integer(views[i], "byteLength", 1, size, label);
       integer(views[i], "buffer", 0, 0, label);
-      if (offset != static_cast<std::int64_t>(aligned4(static_cast<std::size_t>(end))) || length > size - offset) fail(label + " does not lie where it should");
+      if (offset != static_cast<std::int64_t>(aligned4(static_cast<std::size_t>(end))) || length > size - offset)
+        fail(label + " does not lie where it should");
       if (views[i].contains("byteStride")) fail(label + " has a byte stride");
       requireZeros(end, offset);
       views_.push_back(chunks_.binary.subspan(static_cast<std::size_t>(offset), static_cast<std::size_t>(length)));
-      if (!sums[i].is_string() || sums[i].get<std::string>() != checksumOf(views_.back())) fail("checksum of " + label + " does not match");
+      if (!sums[i].is_string() || sums[i].get<std::string>() != checksumOf(views_.back()))
+        fail("checksum of " + label + " does not match");
       end = offset + length;
     }
     if (size - end >= 4) fail("its BIN chunk holds bytes that no buffer view names");
@@ -142,7 +153,8 @@ class BakedReader {
 
   void requireZeros(std::int64_t first, std::int64_t last) const {
     for (std::int64_t i = first; i < last; ++i)
-      if (chunks_.binary[static_cast<std::size_t>(i)] != 0) fail("its padding at byte " + std::to_string(i) + " of the BIN chunk is not 0");
+      if (chunks_.binary[static_cast<std::size_t>(i)] != 0)
+        fail("its padding at byte " + std::to_string(i) + " of the BIN chunk is not 0");
   }
 
   /// The elements of a whole buffer view that must hold exactly `count` of them.
@@ -176,7 +188,8 @@ class BakedReader {
     if (t.directionCount % 4 != 0) fail("\"directionCount\" is not a multiple of 4");
     const json& sharpness = member(e, "directionSharpness", kTransferExtension);
     t.directionSharpness = sharpness.is_number() ? sharpness.get<float>() : -1.0f;
-    if (!(t.directionSharpness >= 0.0f) || !std::isfinite(t.directionSharpness)) fail("\"directionSharpness\" is not a number from 0");
+    if (!(t.directionSharpness >= 0.0f) || !std::isfinite(t.directionSharpness))
+      fail("\"directionSharpness\" is not a number from 0");
     readDirections();
     const auto texels = static_cast<std::size_t>(t.resolution) * static_cast<std::size_t>(t.resolution);
     if (t.terms > 0 || e.contains("mean")) t.mean = elements<float>(viewIndex(e, "mean", kTransferExtension), texels, "the mean");
@@ -188,7 +201,8 @@ class BakedReader {
   void readDirections() {
     Transfer& t = baked_.transfer;
     if (t.directionCount == 0) return;
-    t.directions = elements<glm::vec3>(viewIndex(*extension_, "directions", kTransferExtension), static_cast<std::size_t>(t.directionCount), "the list of directions");
+    t.directions = elements<glm::vec3>(viewIndex(*extension_, "directions", kTransferExtension),
+                                       static_cast<std::size_t>(t.directionCount), "the list of directions");
     for (const auto& d : t.directions) {
       const float error = std::abs(glm::length(d) - 1.0f);
       if (!(error <= 1e-3f)) fail("one of its directions is not a unit vector");
@@ -198,7 +212,8 @@ class BakedReader {
   void readEigenfunctions(std::size_t texels) {
     Transfer& t = baked_.transfer;
     const auto terms = static_cast<std::size_t>(t.terms);
-    const auto halves = elements<std::uint16_t>(viewIndex(*extension_, "eigenfunctions", kTransferExtension), terms * texels, "the eigenfunctions' list");
+    const auto halves = elements<std::uint16_t>(viewIndex(*extension_, "eigenfunctions", kTransferExtension), terms * texels,
+                                                "the eigenfunctions' list");
     t.eigenfunctions.reserve(halves.size());
     for (const auto bits : halves) {
       Imath::half value;
@@ -206,7 +221,8 @@ class BakedReader {
       t.eigenfunctions.push_back(value);
     }
     requireFinite(t.eigenfunctions, "the list of eigenfunctions");
-    t.weightScale = elements<float>(viewIndex(*extension_, "weightScales", kTransferExtension), terms, "the list of weight scales");
+    t.weightScale =
+        elements<float>(viewIndex(*extension_, "weightScales", kTransferExtension), terms, "the list of weight scales");
     requireFinite(t.weightScale, "the list of weight scales");
     for (const float scale : t.weightScale)
       if (!(scale > 0.0f)) fail("a weight scale is not positive");
@@ -247,7 +263,8 @@ class BakedReader {
     const Transfer& t = baked_.transfer;
     PrimitiveTransfer out;
     readColumns(attributes, "_SSDF_", kShort, static_cast<std::size_t>(t.paddedTerms()), count, label, out.weights);
-    readColumns(attributes, "_VISIBILITY_", kUnsignedByte, static_cast<std::size_t>(t.directionCount), count, label, out.visibility);
+    readColumns(attributes, "_VISIBILITY_", kUnsignedByte, static_cast<std::size_t>(t.directionCount), count, label,
+                out.visibility);
     const auto padded = static_cast<std::size_t>(t.paddedTerms());
     for (std::size_t v = 0; v < count; ++v)
       for (std::size_t k = static_cast<std::size_t>(t.terms); k < padded; ++k)
@@ -256,14 +273,15 @@ class BakedReader {
   }
 
   template <class T>
-  void readColumns(const json& attributes, const std::string& prefix, std::int64_t componentType, std::size_t width, std::size_t count,
-                   const std::string& owner, std::vector<T>& out) const {
+  void readColumns(const json& attributes, const std::string& prefix, std::int64_t componentType, std::size_t width,
+                   std::size_t count, const std::string& owner, std::vector<T>& out) const {
     const json& accessors = listOf(root_, "accessors", "the file");
     out.resize(count * width);
     for (std::size_t g = 0; 4 * g < width; ++g) {
       const std::string name = prefix + std::to_string(g);
       const std::string label = name + " of " + owner;
-      const auto& accessor = accessors[static_cast<std::size_t>(integer(attributes, name.c_str(), 0, static_cast<std::int64_t>(accessors.size()) - 1, owner))];
+      const auto& accessor = accessors[static_cast<std::size_t>(
+          integer(attributes, name.c_str(), 0, static_cast<std::int64_t>(accessors.size()) - 1, owner))];
       integer(accessor, "componentType", componentType, componentType, label);
       const std::string type = text(accessor, "type", label);
       if (type != "VEC4" || accessor.contains("sparse") || !accessor.contains("normalized") || accessor["normalized"] != true ||

@@ -33,14 +33,14 @@ struct PrimitiveTransfer {
 };
 
 struct Transfer {
-  int resolution = 0;       ///< octahedral texels a side (lobe/octahedral.glsl), row-major, texel centres at (i + 1/2) / resolution
-  int terms = 0;            ///< PCA terms K >= 0 (0: nothing in the scene is occluded)
-  int directionCount = 0;   ///< a multiple of 4
+  int resolution = 0;  ///< octahedral texels a side (lobe/octahedral.glsl), row-major, texel centres at (i + 1/2) / resolution
+  int terms = 0;       ///< PCA terms K >= 0 (0: nothing in the scene is occluded)
+  int directionCount = 0;  ///< a multiple of 4
   float directionSharpness = 0.0f;
-  std::vector<glm::vec3> directions;    ///< `directionCount` unit axes, world space
-  std::vector<float> mean;              ///< resolution^2, radians
-  std::vector<float> eigenfunctions;    ///< terms by resolution^2, row-major; stored as half
-  std::vector<float> weightScale;       ///< terms; > 0
+  std::vector<glm::vec3> directions;  ///< `directionCount` unit axes, world space
+  std::vector<float> mean;            ///< resolution^2, radians
+  std::vector<float> eigenfunctions;  ///< terms by resolution^2, row-major; stored as half
+  std::vector<float> weightScale;     ///< terms; > 0
   std::vector<PrimitiveTransfer> primitives;
 
   int paddedTerms() const { return (terms + 3) / 4 * 4; }
@@ -53,7 +53,7 @@ struct Transfer {
 using TransferFacts = std::map<std::string, double>;
 
 struct BakedScene {
-  Scene scene;          ///< every primitive has normals; tangents where a material needs them
+  Scene scene;  ///< every primitive has normals; tangents where a material needs them
   Transfer transfer;
   TransferFacts facts;
 };

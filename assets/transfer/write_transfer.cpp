@@ -18,17 +18,22 @@ constexpr std::uint64_t kLargestGlb = 0xFFFFFFFFu;
 /// Everything a reader will check, so that a bug shows before the file exists.
 class FitCheck {
  public:
-  FitCheck(const BakedScene& baked, std::string where) : scene_(baked.scene), transfer_(baked.transfer), where_(std::move(where)) {}
+  FitCheck(const BakedScene& baked, std::string where)
+      : scene_(baked.scene), transfer_(baked.transfer), where_(std::move(where)) {}
 
   void run() const {
     require(scene_.primitives.size() == transfer_.primitives.size(), "the transfer has other primitives than the scene");
     require(!scene_.primitives.empty(), "the scene is empty");
     checkShared();
     for (std::size_t i = 0; i < scene_.primitives.size(); ++i) checkPrimitive(i);
-    const auto inRange = [](int index, std::size_t count) { return index == kNone || (index >= 0 && static_cast<std::size_t>(index) < count); };
-    for (const auto& texture : scene_.textures) require(inRange(texture.image, scene_.images.size()), "a texture names an image that does not exist");
+    const auto inRange = [](int index, std::size_t count) {
+      return index == kNone || (index >= 0 && static_cast<std::size_t>(index) < count);
+    };
+    for (const auto& texture : scene_.textures)
+      require(inRange(texture.image, scene_.images.size()), "a texture names an image that does not exist");
     for (const auto& m : scene_.materials)
-      for (const int texture : {m.baseColorTexture, m.metallicRoughnessTexture, m.normalTexture, m.occlusionTexture, m.emissiveTexture, m.anisotropyTexture})
+      for (const int texture : {m.baseColorTexture, m.metallicRoughnessTexture, m.normalTexture, m.occlusionTexture,
+                                m.emissiveTexture, m.anisotropyTexture})
         require(inRange(texture, scene_.textures.size()), "material " + m.name + " names a texture that does not exist");
     for (const auto& image : scene_.images) require(!image.bytes.empty(), "image " + image.name + " is empty");
   }
@@ -43,7 +48,8 @@ class FitCheck {
     const auto texels = static_cast<std::size_t>(std::max(t.resolution, 0)) * static_cast<std::size_t>(std::max(t.resolution, 0));
     require(t.resolution >= 0 && t.resolution <= kMostTransferResolution, "the resolution is out of range");
     require(t.terms >= 0 && t.terms <= kMostTransferTerms, "the number of terms is out of range");
-    require(t.directionCount >= 0 && t.directionCount <= kMostTransferDirections && t.directionCount % 4 == 0, "the number of directions is out of range or not a multiple of 4");
+    require(t.directionCount >= 0 && t.directionCount <= kMostTransferDirections && t.directionCount % 4 == 0,
+            "the number of directions is out of range or not a multiple of 4");
     require(t.directions.size() == static_cast<std::size_t>(t.directionCount), "the directions are not as many as they say");
     require(t.mean.size() == texels || (t.mean.empty() && t.terms == 0), "the mean has the wrong size");
     require(t.eigenfunctions.size() == texels * static_cast<std::size_t>(t.terms), "the eigenfunctions have the wrong size");
@@ -65,16 +71,23 @@ class FitCheck {
     require(p.normals.size() == count, label + " does not have one normal a vertex");
     require(p.tangents.empty() || p.tangents.size() == count, label + " does not have one tangent a vertex");
     require(p.texcoords.empty() || p.texcoords.size() == count, label + " does not have one texture coordinate a vertex");
-    require(p.mesh >= 0 && static_cast<std::size_t>(p.mesh) < scene_.meshNames.size(), label + " names a mesh that does not exist");
-    require(p.material == kNone || (p.material >= 0 && static_cast<std::size_t>(p.material) < scene_.materials.size()), label + " names a material that does not exist");
+    require(p.mesh >= 0 && static_cast<std::size_t>(p.mesh) < scene_.meshNames.size(),
+            label + " names a mesh that does not exist");
+    require(p.material == kNone || (p.material >= 0 && static_cast<std::size_t>(p.material) < scene_.materials.size()),
+            label + " names a material that does not exist");
     for (const auto i : p.indices) require(i < count, label + " has an index out of range");
-    for (const auto& v : p.positions) require(std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z), label + " has a position that is not finite");
+    for (const auto& v : p.positions)
+      require(std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z), label + " has a position that is not finite");
     for (const auto& v : p.normals) require(std::abs(glm::length(v) - 1.0f) <= 1e-3f, label + " has a normal that is not unit");
-    for (const auto& v : p.tangents) require(std::abs(glm::length(glm::vec3(v)) - 1.0f) <= 1e-3f && std::abs(v.w) == 1.0f, label + " has a tangent that is not unit");
-    for (const auto& v : p.texcoords) require(std::isfinite(v.x) && std::isfinite(v.y), label + " has a texture coordinate that is not finite");
+    for (const auto& v : p.tangents)
+      require(std::abs(glm::length(glm::vec3(v)) - 1.0f) <= 1e-3f && std::abs(v.w) == 1.0f,
+              label + " has a tangent that is not unit");
+    for (const auto& v : p.texcoords)
+      require(std::isfinite(v.x) && std::isfinite(v.y), label + " has a texture coordinate that is not finite");
     const auto padded = static_cast<std::size_t>(transfer_.paddedTerms());
     require(t.weights.size() == count * padded, label + " has the wrong number of weights");
-    require(t.visibility.size() == count * static_cast<std::size_t>(transfer_.directionCount), label + " has the wrong number of visible fractions");
+    require(t.visibility.size() == count * static_cast<std::size_t>(transfer_.directionCount),
+            label + " has the wrong number of visible fractions");
     for (std::size_t v = 0; v < count; ++v)
       for (std::size_t k = static_cast<std::size_t>(transfer_.terms); k < padded; ++k)
         require(t.weights[v * padded + k] == 0, label + " has weights that are not 0 behind the last term");
@@ -108,12 +121,13 @@ std::vector<T> columnsOf4(const std::vector<T>& rows, std::size_t width, std::si
   return out;
 }
 
-void addVertexTransfer(const Transfer& transfer, const PrimitiveTransfer& values, std::size_t vertexCount, const Json::json_pointer& place,
-                       GltfWriter& writer) {
+void addVertexTransfer(const Transfer& transfer, const PrimitiveTransfer& values, std::size_t vertexCount,
+                       const Json::json_pointer& place, GltfWriter& writer) {
   const auto add = [&](const std::string& name, const auto& rows, std::size_t width, int componentType) {
     for (std::size_t g = 0; 4 * g < width; ++g) {
       const std::string attribute = name + std::to_string(g);
-      const int view = writer.addArray(columnsOf4(rows, width, g), attribute + " of " + place.to_string(), GltfWriter::Target::vertices);
+      const int view =
+          writer.addArray(columnsOf4(rows, width, g), attribute + " of " + place.to_string(), GltfWriter::Target::vertices);
       writer.json[place]["attributes"][attribute] = writer.addAccessor(view, componentType, "VEC4", vertexCount, true);
     }
   };
@@ -162,7 +176,8 @@ void writeBakedScene(const std::filesystem::path& path, const BakedScene& baked,
   const std::string where = path.string();
   FitCheck(baked, where).run();
   if (upperBound(baked) > kLargestGlb)
-    throw Error(ExitCode::failed, where, "the baked scene is larger than 4 GiB, which a .glb cannot hold", "bake fewer terms or split the scene");
+    throw Error(ExitCode::failed, where, "the baked scene is larger than 4 GiB, which a .glb cannot hold",
+                "bake fewer terms or split the scene");
 
   GltfWriter writer;
   writer.json["asset"] = {{"version", "2.0"}, {"generator", generator}};
@@ -170,7 +185,8 @@ void writeBakedScene(const std::filesystem::path& path, const BakedScene& baked,
   const auto order = primitiveOrder(baked.scene);
   const auto places = writeScene(baked.scene, order, writer);
   for (std::size_t i = 0; i < order.size(); ++i)
-    addVertexTransfer(baked.transfer, baked.transfer.primitives[order[i]], baked.scene.primitives[order[i]].positions.size(), places[i], writer);
+    addVertexTransfer(baked.transfer, baked.transfer.primitives[order[i]], baked.scene.primitives[order[i]].positions.size(),
+                      places[i], writer);
   writer.json["extensions"][kTransferExtension] = extensionOf(baked, writer);
   writer.json["buffers"] = Json::array({{{"byteLength", aligned4(writer.binary().size())}}});
   writeFileAtomically(path, GltfWriter::container(signedJson(writer.json), writer.binary()));

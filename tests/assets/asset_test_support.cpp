@@ -56,10 +56,10 @@ std::vector<std::uint8_t> tinyJpeg() {
   // Baseline, one grey 8x8 block cut to 1x1: quantisation by 1, a DC table of one code and an AC table of one code.
   std::vector<std::uint8_t> bytes{0xFF, 0xD8, 0xFF, 0xDB, 0x00, 0x43, 0x00};
   bytes.insert(bytes.end(), 64, 1);
-  const std::vector<std::uint8_t> rest{0xFF, 0xC0, 0x00, 0x0B, 8, 0, 1, 0, 1, 1, 1, 0x11, 0,
-                                       0xFF, 0xC4, 0x00, 0x14, 0x00, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0,
-                                       0xFF, 0xC4, 0x00, 0x14, 0x10, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0,
-                                       0xFF, 0xDA, 0x00, 0x08, 1, 1, 0x00, 0, 63, 0, 0x3F, 0xFF, 0xD9};
+  const std::vector<std::uint8_t> rest{
+      0xFF, 0xC0, 0x00, 0x0B, 8, 0, 1, 0, 1, 1,    1,    0x11, 0,    0xFF, 0xC4, 0x00, 0x14, 0x00, 1, 0,    0,    0,   0, 0,
+      0,    0,    0,    0,    0, 0, 0, 0, 0, 0,    0,    0xFF, 0xC4, 0x00, 0x14, 0x10, 1,    0,    0, 0,    0,    0,   0, 0,
+      0,    0,    0,    0,    0, 0, 0, 0, 0, 0xFF, 0xDA, 0x00, 0x08, 1,    1,    0x00, 0,    63,   0, 0x3F, 0xFF, 0xD9};
   bytes.insert(bytes.end(), rest.begin(), rest.end());
   return bytes;
 }
@@ -97,14 +97,18 @@ Transfer anyTransfer(std::mt19937& random, const Scene& scene, int resolution, i
   if (terms > 0)
     for (std::size_t i = 0; i < texels; ++i) t.mean.push_back(uniform(random));
   // Halves, so that a round trip is exact.
-  for (std::size_t i = 0; i < texels * static_cast<std::size_t>(terms); ++i) t.eigenfunctions.push_back(Imath::half(uniform(random)));
+  for (std::size_t i = 0; i < texels * static_cast<std::size_t>(terms); ++i)
+    t.eigenfunctions.push_back(Imath::half(uniform(random)));
   for (int i = 0; i < terms; ++i) t.weightScale.push_back(0.5f + std::abs(uniform(random)));
   const auto padded = static_cast<std::size_t>(t.paddedTerms());
   for (const auto& p : scene.primitives) {
     PrimitiveTransfer values;
     for (std::size_t i = 0; i < p.positions.size() * padded; ++i)
-      values.weights.push_back(i % padded < static_cast<std::size_t>(terms) ? static_cast<std::int16_t>(static_cast<int>(random() % 65535) - 32767) : std::int16_t{0});
-    for (std::size_t i = 0; i < p.positions.size() * static_cast<std::size_t>(directions); ++i) values.visibility.push_back(static_cast<std::uint8_t>(random()));
+      values.weights.push_back(i % padded < static_cast<std::size_t>(terms)
+                                   ? static_cast<std::int16_t>(static_cast<int>(random() % 65535) - 32767)
+                                   : std::int16_t{0});
+    for (std::size_t i = 0; i < p.positions.size() * static_cast<std::size_t>(directions); ++i)
+      values.visibility.push_back(static_cast<std::uint8_t>(random()));
     t.primitives.push_back(std::move(values));
   }
   return t;
@@ -126,7 +130,9 @@ BakedScene sampleBake(int terms) {
   scene.primitives[1].name = "no material";
   scene.primitives[2].name = "plinth";
   scene.images = {{"colours", "image/png", tinyPng()}, {"", "image/jpeg", tinyJpeg()}};
-  scene.textures = {{0, Wrap::clampToEdge, Wrap::mirroredRepeat, true}, {1, Wrap::repeat, Wrap::repeat, false}, {0, Wrap::repeat, Wrap::repeat, false}};
+  scene.textures = {{0, Wrap::clampToEdge, Wrap::mirroredRepeat, true},
+                    {1, Wrap::repeat, Wrap::repeat, false},
+                    {0, Wrap::repeat, Wrap::repeat, false}};
   Material brushed;
   brushed.name = "brushed";
   brushed.baseColorFactor = {0.1f, 0.2f, 0.3f, 0.4f};
@@ -204,7 +210,8 @@ BakedScene tinyBake() {
 std::optional<std::filesystem::path> evaluationPack() {
   const char* data = std::getenv("CHIARO_DATA");
   const char* source = std::getenv("CHIARO_SOURCE_DIR");
-  const std::filesystem::path path = data != nullptr ? std::filesystem::path(data) : std::filesystem::path(source != nullptr ? source : ".") / "../shared/data";
+  const std::filesystem::path path =
+      data != nullptr ? std::filesystem::path(data) : std::filesystem::path(source != nullptr ? source : ".") / "../shared/data";
   return std::filesystem::is_directory(path / "clear") ? std::optional(path) : std::nullopt;
 }
 

@@ -19,7 +19,8 @@ using test::Folder;
 using testing::HasSubstr;
 
 std::size_t filesIn(const Folder& folder) {
-  return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(folder.path()), std::filesystem::directory_iterator()));
+  return static_cast<std::size_t>(
+      std::distance(std::filesystem::directory_iterator(folder.path()), std::filesystem::directory_iterator()));
 }
 
 TEST(File, WritesAndReplaces) {
@@ -51,7 +52,8 @@ TEST(File, FollowsALinkAndRefusesWhatIsNoFile) {
   EXPECT_TRUE(std::filesystem::is_symlink(folder / "link"));
   EXPECT_EQ(readFile(folder / "target"), (std::vector<std::uint8_t>{'n', 'e', 'w'}));
   for (const char* device : {"/dev/null", "/dev/zero"}) {
-    EXPECT_THAT(errorOf([&] { writeFileAtomically(device, "x"); }, ExitCode::unwritableOutput), HasSubstr("is not a regular file"));
+    EXPECT_THAT(errorOf([&] { writeFileAtomically(device, "x"); }, ExitCode::unwritableOutput),
+                HasSubstr("is not a regular file"));
     EXPECT_THAT(errorOf([&] { requireWritable(device); }, ExitCode::unwritableOutput), HasSubstr("is not a regular file"));
   }
   EXPECT_THAT(errorOf([&] { writeFileAtomically(folder.path(), "x"); }, ExitCode::unwritableOutput), HasSubstr("is a folder"));

@@ -21,7 +21,13 @@ class File {
  public:
   json root;
 
-  File() { root = {{"asset", {{"version", "2.0"}}}, {"scene", 0}, {"scenes", {{{"nodes", json::array()}}}}, {"meshes", json::array()}, {"nodes", json::array()}}; }
+  File() {
+    root = {{"asset", {{"version", "2.0"}}},
+            {"scene", 0},
+            {"scenes", {{{"nodes", json::array()}}}},
+            {"meshes", json::array()},
+            {"nodes", json::array()}};
+  }
 
   template <class T>
   int view(const std::vector<T>& values, std::size_t stride = 0) {
@@ -115,7 +121,11 @@ TEST(GltfScene, DataUriBuffer) {
   File file;
   file.triangle();
   file.save("a.gltf");
-  file.root["buffers"] = {{{"byteLength", 72}, {"uri", "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAAAAAAAAAAAAIA/AAAAAAAAAAAAAIA/AAAAAAAAAAAAAIA/"}}};
+  file.root["buffers"] = {
+      {{"byteLength", 72},
+       {"uri",
+        "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAAAAAAAAAAAAIA/AAAAAAAAAAAAAIA/"
+        "AAAAAAAAAAAAAIA/"}}};
   const Scene scene = loadScene(test::put(file.folder / "a.gltf", file.root.dump()));
   EXPECT_EQ(scene.primitives[0].positions[2], glm::vec3(0, 1, 0));
 }
@@ -181,7 +191,8 @@ TEST(GltfScene, StripsAndFansBecomeListsWithTheSameFront) {
   for (const int mode : {5, 6}) {
     File file;
     // A square counter-clockwise from +z: strips zigzag, fans go round.
-    const int position = mode == 5 ? file.floats({0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0}, "VEC3") : file.floats({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0}, "VEC3");
+    const int position = mode == 5 ? file.floats({0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0}, "VEC3")
+                                   : file.floats({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0}, "VEC3");
     file.primitive({{"attributes", {{"POSITION", position}}}, {"mode", mode}});
     const Scene scene = file.load();
     ASSERT_EQ(scene.triangleCount(), 2u);
@@ -228,9 +239,12 @@ TEST(GltfScene, NormalisedAndQuantisedIntegers) {
   file.root["extensionsUsed"] = {"KHR_mesh_quantization"};
   file.root["extensionsRequired"] = {"KHR_mesh_quantization"};
   // Interleaved shorts with a stride of 8, the fourth one padding.
-  const int position = file.accessor(file.view(std::vector<std::int16_t>{0, 0, 0, 9, 300, 0, 0, 9, 0, -200, 0, 9}, 8), 5122, "VEC3", 3);
-  const int normal = file.accessor(file.view(std::vector<std::int8_t>{0, 0, -128, 0, 0, 0, -127, 0, 0, 0, -127, 0}, 4), 5120, "VEC3", 3, {{"normalized", true}});
-  const int texcoord = file.accessor(file.view(std::vector<std::uint16_t>{0, 65535, 32768, 0, 13107, 0}), 5123, "VEC2", 3, {{"normalized", true}});
+  const int position =
+      file.accessor(file.view(std::vector<std::int16_t>{0, 0, 0, 9, 300, 0, 0, 9, 0, -200, 0, 9}, 8), 5122, "VEC3", 3);
+  const int normal = file.accessor(file.view(std::vector<std::int8_t>{0, 0, -128, 0, 0, 0, -127, 0, 0, 0, -127, 0}, 4), 5120,
+                                   "VEC3", 3, {{"normalized", true}});
+  const int texcoord =
+      file.accessor(file.view(std::vector<std::uint16_t>{0, 65535, 32768, 0, 13107, 0}), 5123, "VEC2", 3, {{"normalized", true}});
   file.primitive({{"attributes", {{"POSITION", position}, {"NORMAL", normal}, {"TEXCOORD_0", texcoord}}}});
   const Scene scene = file.load();
   const auto& p = scene.primitives[0];
@@ -246,10 +260,12 @@ TEST(GltfScene, SparseAccessors) {
   const int base = file.view(std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0});
   const int indices = file.view(std::vector<std::uint8_t>{2});
   const int values = file.view(std::vector<float>{0, 5, 0});
-  const json sparse{{"count", 1}, {"indices", {{"bufferView", indices}, {"componentType", 5121}}}, {"values", {{"bufferView", values}}}};
+  const json sparse{
+      {"count", 1}, {"indices", {{"bufferView", indices}, {"componentType", 5121}}}, {"values", {{"bufferView", values}}}};
   const int position = file.accessor(base, 5126, "VEC3", 3, {{"sparse", sparse}});
   // Without a buffer view all else is zero.
-  const json sparseNormal{{"count", 1}, {"indices", {{"bufferView", indices}, {"componentType", 5121}}}, {"values", {{"bufferView", values}}}};
+  const json sparseNormal{
+      {"count", 1}, {"indices", {{"bufferView", indices}, {"componentType", 5121}}}, {"values", {{"bufferView", values}}}};
   const int normal = file.accessor(-1, 5126, "VEC3", 3, {{"sparse", sparseNormal}});
   file.primitive({{"attributes", {{"POSITION", position}, {"NORMAL", normal}}}});
   const Scene scene = file.load();
@@ -268,21 +284,27 @@ TEST(GltfScene, MaterialsAndTextures) {
   file.root["images"] = {{{"uri", "col%20our.png"}, {"name", "colour"}},
                          {{"bufferView", file.view(test::tinyJpeg())}, {"mimeType", "image/jpeg"}}};
   file.root["samplers"] = {{{"wrapS", 33071}, {"wrapT", 33648}, {"magFilter", 9728}}};
-  file.root["textures"] = {{{"source", 0}, {"sampler", 0}}, {{"source", 1}}, {{"extensions", {{"EXT_texture_webp", {{"source", 0}}}}}}};
+  file.root["textures"] = {
+      {{"source", 0}, {"sampler", 0}}, {{"source", 1}}, {{"extensions", {{"EXT_texture_webp", {{"source", 0}}}}}}};
   file.root["extensionsUsed"] = {"KHR_materials_emissive_strength", "KHR_materials_anisotropy", "KHR_materials_clearcoat"};
-  file.root["materials"] = {{{"name", "a"},
-                             {"pbrMetallicRoughness",
-                              {{"baseColorFactor", {0.5, 0.25, 1, 1}}, {"baseColorTexture", {{"index", 0}}}, {"metallicFactor", 0.25},
-                               {"roughnessFactor", 1.5}, {"metallicRoughnessTexture", {{"index", 1}, {"texCoord", 1}}}}},
-                             {"normalTexture", {{"index", 1}, {"scale", 0.5}}},
-                             {"occlusionTexture", {{"index", 2}}},
-                             {"emissiveFactor", {1, 0.5, 0}},
-                             {"alphaMode", "MASK"},
-                             {"alphaCutoff", 0.25},
-                             {"doubleSided", true},
-                             {"extensions",
-                              {{"KHR_materials_emissive_strength", {{"emissiveStrength", 8}}},
-                               {"KHR_materials_anisotropy", {{"anisotropyStrength", 0.5}, {"anisotropyRotation", 1}, {"anisotropyTexture", {{"index", 1}}}}}}}}};
+  file.root["materials"] = {
+      {{"name", "a"},
+       {"pbrMetallicRoughness",
+        {{"baseColorFactor", {0.5, 0.25, 1, 1}},
+         {"baseColorTexture", {{"index", 0}}},
+         {"metallicFactor", 0.25},
+         {"roughnessFactor", 1.5},
+         {"metallicRoughnessTexture", {{"index", 1}, {"texCoord", 1}}}}},
+       {"normalTexture", {{"index", 1}, {"scale", 0.5}}},
+       {"occlusionTexture", {{"index", 2}}},
+       {"emissiveFactor", {1, 0.5, 0}},
+       {"alphaMode", "MASK"},
+       {"alphaCutoff", 0.25},
+       {"doubleSided", true},
+       {"extensions",
+        {{"KHR_materials_emissive_strength", {{"emissiveStrength", 8}}},
+         {"KHR_materials_anisotropy",
+          {{"anisotropyStrength", 0.5}, {"anisotropyRotation", 1}, {"anisotropyTexture", {{"index", 1}}}}}}}}};
   file.root["meshes"][0]["primitives"][0]["material"] = 0;
   const Scene scene = file.load();
   ASSERT_EQ(scene.materials.size(), 1u);
@@ -309,10 +331,12 @@ TEST(GltfScene, MaterialsAndTextures) {
   EXPECT_EQ(scene.textures[0].wrapT, Wrap::mirroredRepeat);
   EXPECT_TRUE(scene.textures[0].nearest);
   EXPECT_EQ(scene.textures[1].wrapS, Wrap::repeat);
-  EXPECT_THAT(file.warnings, testing::IsSupersetOf({HasSubstr("KHR_materials_clearcoat is ignored"), HasSubstr("TEXCOORD_1"), HasSubstr("roughnessFactor"), HasSubstr("texture 2")}));
+  EXPECT_THAT(file.warnings, testing::IsSupersetOf({HasSubstr("KHR_materials_clearcoat is ignored"), HasSubstr("TEXCOORD_1"),
+                                                    HasSubstr("roughnessFactor"), HasSubstr("texture 2")}));
 
   std::filesystem::remove(file.folder / "col our.png");
-  EXPECT_THAT(file.error(), testing::AllOf(HasSubstr("image 0 (colour) cannot be read"), HasSubstr("col our.png"), HasSubstr("put the image where")));
+  EXPECT_THAT(file.error(), testing::AllOf(HasSubstr("image 0 (colour) cannot be read"), HasSubstr("col our.png"),
+                                           HasSubstr("put the image where")));
   test::put(file.folder / "col our.png", std::string("not an image"));
   EXPECT_THAT(file.error(), HasSubstr("image 0 (colour) is neither PNG nor JPEG"));
 }
@@ -326,8 +350,9 @@ TEST(GltfScene, CamerasAndLights) {
   file.node({{"camera", 0}, {"name", "eye"}, {"translation", {1, 2, 3}}, {"rotation", {0, r, 0, r}}, {"scale", {4, 4, 4}}});
   file.node({{"camera", 1}});
   file.root["extensionsUsed"] = {"KHR_lights_punctual"};
-  file.root["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "directional"}, {"intensity", 3}, {"color", {1, 0.5, 0}}},
-                                                               {{"type", "spot"}, {"range", 7}, {"spot", {{"innerConeAngle", 0.1}, {"outerConeAngle", 0.2}}}}};
+  file.root["extensions"]["KHR_lights_punctual"]["lights"] = {
+      {{"type", "directional"}, {"intensity", 3}, {"color", {1, 0.5, 0}}},
+      {{"type", "spot"}, {"range", 7}, {"spot", {{"innerConeAngle", 0.1}, {"outerConeAngle", 0.2}}}}};
   file.node({{"rotation", {0, r, 0, r}}, {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
   file.node({{"translation", {0, 9, 0}}, {"extensions", {{"KHR_lights_punctual", {{"light", 1}}}}}});
   const Scene scene = file.load();
@@ -372,7 +397,8 @@ TEST(GltfScene, DamageIsNamed) {
     return file.error();
   };
   const std::string where = "primitive 0 of mesh 0 (m): ";
-  EXPECT_THAT(broken([](json& r) { r["accessors"][0]["count"] = 4; }), HasSubstr(where + "POSITION reaches beyond the end of buffer view 0"));
+  EXPECT_THAT(broken([](json& r) { r["accessors"][0]["count"] = 4; }),
+              HasSubstr(where + "POSITION reaches beyond the end of buffer view 0"));
   EXPECT_THAT(broken([](json& r) { r["accessors"][0]["count"] = 4294967295u; }), HasSubstr("POSITION reaches beyond"));
   EXPECT_THAT(broken([](json& r) { r["accessors"][0]["byteOffset"] = 8; }), HasSubstr("POSITION reaches beyond"));
   EXPECT_THAT(broken([](json& r) { r["accessors"][0]["bufferView"] = 7; }), HasSubstr("buffer view 7"));
@@ -382,7 +408,11 @@ TEST(GltfScene, DamageIsNamed) {
   EXPECT_THAT(broken([](json& r) { r["bufferViews"][0]["byteStride"] = 8; }), HasSubstr("byte stride of 8"));
   EXPECT_THAT(broken([](json& r) { r["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = 9; }), HasSubstr("accessor 9"));
   EXPECT_THAT(broken([](json& r) { r["meshes"][0]["primitives"][0]["material"] = 0; }), HasSubstr("material 0"));
-  EXPECT_THAT(broken([](json& r) { r["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] = 2; r["accessors"].push_back(r["accessors"][1]); r["accessors"][2]["count"] = 2; }),
+  EXPECT_THAT(broken([](json& r) {
+                r["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] = 2;
+                r["accessors"].push_back(r["accessors"][1]);
+                r["accessors"][2]["count"] = 2;
+              }),
               HasSubstr("NORMAL has 2 elements for 3 vertices"));
   EXPECT_THAT(broken([](json& r) { r["nodes"][0]["mesh"] = 5; }), HasSubstr("mesh 5"));
   EXPECT_THAT(broken([](json& r) { r["nodes"][0]["children"] = {0}; }), HasSubstr("reached twice"));
@@ -416,7 +446,8 @@ TEST(GltfScene, FilesThatAreNotThere) {
   EXPECT_THAT(errorOf([&] { loadScene(path); }), HasSubstr("not a readable glTF file"));
   EXPECT_THAT(errorOf([&] { loadScene(file.folder / "b.gltf"); }), HasSubstr("cannot open"));
   EXPECT_THAT(errorOf([&] { loadScene(file.folder.path()); }), HasSubstr("file extension"));
-  EXPECT_THAT(errorOf([&] { loadScene(test::put(file.folder / "a.fbx", std::string("x"))); }), HasSubstr("unknown file extension .fbx"));
+  EXPECT_THAT(errorOf([&] { loadScene(test::put(file.folder / "a.fbx", std::string("x"))); }),
+              HasSubstr("unknown file extension .fbx"));
   EXPECT_THAT(errorOf([&] { loadScene(test::put(file.folder / "e.glb", std::string())); }), HasSubstr("is empty"));
 }
 
@@ -446,7 +477,8 @@ TEST(GltfScene, RandomDamageFailsCleanly) {
     for (int i = 0; i < flips; ++i) {
       auto& byte = bytes[random() % bytes.size()];
       // Digits for digits find their way deeper than noise.
-      byte = byte >= '0' && byte <= '9' && random() % 4 != 0 ? static_cast<std::uint8_t>("0123456789-"[random() % 11]) : static_cast<std::uint8_t>(random());
+      byte = byte >= '0' && byte <= '9' && random() % 4 != 0 ? static_cast<std::uint8_t>("0123456789-"[random() % 11])
+                                                             : static_cast<std::uint8_t>(random());
     }
     const auto path = test::put(file.folder / "a.glb", bytes);
     ASSERT_TRUE(test::failsCleanly([&] {

@@ -60,9 +60,14 @@ struct ExrWriter {
           const float value = radianceAt(x, y, static_cast<int>(c));
           const Imath::half narrow(value);
           const auto whole = static_cast<unsigned int>(100.0f * value);
-          std::memcpy(out, type == Imf::HALF ? static_cast<const void*>(&narrow) : type == Imf::FLOAT ? static_cast<const void*>(&value) : &whole, size);
+          std::memcpy(out,
+                      type == Imf::HALF    ? static_cast<const void*>(&narrow)
+                      : type == Imf::FLOAT ? static_cast<const void*>(&value)
+                                           : &whole,
+                      size);
         }
-      char* base = storage.back().data() - (static_cast<std::ptrdiff_t>(data.min.y) * width + data.min.x) * static_cast<std::ptrdiff_t>(size);
+      char* base = storage.back().data() -
+                   (static_cast<std::ptrdiff_t>(data.min.y) * width + data.min.x) * static_cast<std::ptrdiff_t>(size);
       buffer.insert(channels[c], Imf::Slice(type, base, size, size * static_cast<std::size_t>(width)));
     }
     if (tiled) {
@@ -82,7 +87,9 @@ double worst(const ImageRgb& image, double scale = 1.0) {
   double error = 0.0;
   for (int y = 0; y < image.height; ++y)
     for (int x = 0; x < image.width; ++x)
-      for (int c = 0; c < 3; ++c) error = std::max(error, std::abs(static_cast<double>(image.at(x, y)[c]) / scale - static_cast<double>(radianceAt(x, y, c))));
+      for (int c = 0; c < 3; ++c)
+        error =
+            std::max(error, std::abs(static_cast<double>(image.at(x, y)[c]) / scale - static_cast<double>(radianceAt(x, y, c))));
   return error;
 }
 
@@ -138,7 +145,8 @@ TEST(Exr, LuminanceOnlyAndAlpha) {
   EXPECT_EQ(readExr(folder / "a.exr").at(3, 4).w, 1.0f);
   writer.channels = {"R", "G", "depth"};
   writer.write(folder / "a.exr");
-  EXPECT_THAT(errorOf([&] { readExr(folder / "a.exr"); }), HasSubstr("neither R, G and B nor Y among its channels (G, R, depth)"));
+  EXPECT_THAT(errorOf([&] { readExr(folder / "a.exr"); }),
+              HasSubstr("neither R, G and B nor Y among its channels (G, R, depth)"));
 }
 
 TEST(Exr, LuminanceWithSubsampledChroma) {
@@ -173,7 +181,8 @@ TEST(Exr, FirstPartOfMany) {
       std::vector<float> values(static_cast<std::size_t>(width * height), p == 0 ? 2.0f : 7.0f);
       Imf::FrameBuffer buffer;
       for (const char* channel : {"R", "G", "B"})
-        buffer.insert(channel, Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(values.data()), 4, 4 * static_cast<std::size_t>(width)));
+        buffer.insert(channel,
+                      Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(values.data()), 4, 4 * static_cast<std::size_t>(width)));
       Imf::OutputPart part(file, p);
       part.setFrameBuffer(buffer);
       part.writePixels(height);
@@ -190,7 +199,8 @@ TEST(Exr, ChromaticitiesAreConverted) {
   writer.chromaticities = Imf::Chromaticities({0.708f, 0.292f}, {0.170f, 0.797f}, {0.131f, 0.046f}, {0.3127f, 0.3290f});
   writer.write(folder / "a.exr");
   const ImageRgb image = readHdrImage(folder / "a.exr");
-  const glm::dmat3 expected = glm::transpose(glm::dmat3(1.6605, -0.5876, -0.0728, -0.1246, 1.1329, -0.0083, -0.0182, -0.1006, 1.1187));
+  const glm::dmat3 expected =
+      glm::transpose(glm::dmat3(1.6605, -0.5876, -0.0728, -0.1246, 1.1329, -0.0083, -0.0182, -0.1006, 1.1187));
   const glm::dvec3 converted = expected * glm::dvec3(radianceAt(7, 9, 0), radianceAt(7, 9, 1), radianceAt(7, 9, 2));
   // Four decimals in the recommendation, times values up to 6.
   const double error = glm::length(glm::max(converted, glm::dvec3(0.0)) - glm::dvec3(image.at(7, 9)));
@@ -268,16 +278,20 @@ TEST(Exr, DamageFailsCleanly) {
     for (int round = 0; round < 600; ++round) {
       auto bytes = good;
       // Half of the damage goes into the header.
-      for (int i = 0; i < 2; ++i) bytes[random() % (round % 2 == 0 ? std::min<std::size_t>(bytes.size(), 400) : bytes.size())] = static_cast<std::uint8_t>(random());
+      for (int i = 0; i < 2; ++i)
+        bytes[random() % (round % 2 == 0 ? std::min<std::size_t>(bytes.size(), 400) : bytes.size())] =
+            static_cast<std::uint8_t>(random());
       test::put(folder / "a.exr", bytes);
       ASSERT_TRUE(test::failsCleanly([&] { readExr(folder / "a.exr"); }));
     }
   }
-  EXPECT_THAT(errorOf([&] { readExr(test::put(folder / "a.exr", std::string("not an image at all"))); }), HasSubstr("is not an OpenEXR image"));
+  EXPECT_THAT(errorOf([&] { readExr(test::put(folder / "a.exr", std::string("not an image at all"))); }),
+              HasSubstr("is not an OpenEXR image"));
 }
 
 std::string hdrHeader(int width, int height, const std::string& more = "") {
-  return "#?RADIANCE\n# a comment\nFORMAT=32-bit_rle_rgbe\n" + more + "\n-Y " + std::to_string(height) + " +X " + std::to_string(width) + "\n";
+  return "#?RADIANCE\n# a comment\nFORMAT=32-bit_rle_rgbe\n" + more + "\n-Y " + std::to_string(height) + " +X " +
+         std::to_string(width) + "\n";
 }
 
 std::string rgbe(int r, int g, int b, int e) {
@@ -294,12 +308,14 @@ TEST(RadianceHdr, FlatOldAndNewRunLengths) {
   EXPECT_EQ(flat.at(0, 0), glm::vec3(1.0f, 0.5f, 0.0f));
   EXPECT_EQ(flat.at(1, 0), glm::vec3(0.0f));
   // 1 + 3 + 256 + 5 texels: a run of 3, then one of 5 + 256 * 1 in two digits.
-  const ImageRgb old = readHdrText(hdrHeader(1 + 3 + 1 + 5 + 256, 1) + rgbe(128, 0, 0, 129) + rgbe(1, 1, 1, 3) + rgbe(0, 128, 0, 129) + rgbe(1, 1, 1, 5) + rgbe(1, 1, 1, 1));
+  const ImageRgb old = readHdrText(hdrHeader(1 + 3 + 1 + 5 + 256, 1) + rgbe(128, 0, 0, 129) + rgbe(1, 1, 1, 3) +
+                                   rgbe(0, 128, 0, 129) + rgbe(1, 1, 1, 5) + rgbe(1, 1, 1, 1));
   EXPECT_EQ(old.at(3, 0), glm::vec3(1, 0, 0));
   EXPECT_EQ(old.at(4, 0), glm::vec3(0, 1, 0));
   EXPECT_EQ(old.at(265, 0), glm::vec3(0, 1, 0));
   // New: width 8; red is a run, green is literal, blue mixed, exponent a run.
-  const std::string row = std::string("\2\2\0\10", 4) + "\x88\x80" + std::string("\10\0\1\2\3\4\5\6\7", 9) + std::string("\4\1\2\3\4\x84\7", 7) + "\x88\x81";
+  const std::string row = std::string("\2\2\0\10", 4) + "\x88\x80" + std::string("\10\0\1\2\3\4\5\6\7", 9) +
+                          std::string("\4\1\2\3\4\x84\7", 7) + "\x88\x81";
   const ImageRgb coded = readHdrText(hdrHeader(8, 2) + row + row);
   EXPECT_EQ(coded.at(5, 1), glm::vec3(128, 5, 7) / 128.0f);
   EXPECT_EQ(coded.at(2, 0), glm::vec3(128, 2, 3) / 128.0f);
@@ -314,10 +330,12 @@ TEST(RadianceHdr, ExposureAndOrientation) {
 
 TEST(RadianceHdr, Damage) {
   const std::string good = hdrHeader(2, 1) + rgbe(1, 2, 3, 4) + rgbe(5, 6, 7, 8);
-  for (std::size_t length = 0; length < good.size(); ++length) EXPECT_NE(errorOf([&] { readHdrText(good.substr(0, length)); }), "") << length;
+  for (std::size_t length = 0; length < good.size(); ++length)
+    EXPECT_NE(errorOf([&] { readHdrText(good.substr(0, length)); }), "") << length;
   EXPECT_THAT(errorOf([&] { readHdrText(good.substr(0, good.size() - 1)); }), HasSubstr("truncated"));
   EXPECT_THAT(errorOf([&] { readHdrText("P6 " + good); }), HasSubstr("does not start with \"#?\""));
-  EXPECT_THAT(errorOf([&] { readHdrText("#?RADIANCE\nFORMAT=32-bit_rle_xyze\n\n-Y 1 +X 1\n" + rgbe(1, 2, 3, 4)); }), HasSubstr("32-bit_rle_xyze"));
+  EXPECT_THAT(errorOf([&] { readHdrText("#?RADIANCE\nFORMAT=32-bit_rle_xyze\n\n-Y 1 +X 1\n" + rgbe(1, 2, 3, 4)); }),
+              HasSubstr("32-bit_rle_xyze"));
   EXPECT_THAT(errorOf([&] { readHdrText(hdrHeader(40000, 1)); }), HasSubstr("40000x1"));
   EXPECT_THAT(errorOf([&] { readHdrText(hdrHeader(30000, 30000) + std::string(40000, 'x')); }), HasSubstr("the limits are"));
   EXPECT_THAT(errorOf([&] { readHdrText(hdrHeader(8, 1) + std::string("\2\2\0\11", 4)); }), HasSubstr("wrong length"));
@@ -326,7 +344,8 @@ TEST(RadianceHdr, Damage) {
   EXPECT_THAT(errorOf([&] { readHdrText(hdrHeader(1, 1, "EXPOSURE=0\n") + rgbe(1, 2, 3, 4)); }), HasSubstr("EXPOSURE"));
   EXPECT_THAT(errorOf([&] { readHdrText(hdrHeader(1, 1, "EXPOSURE=1e-30\n") + rgbe(1, 2, 3, 255)); }), HasSubstr("not finite"));
   std::mt19937 random(6);
-  const std::string row = std::string("\2\2\0\10", 4) + "\x88\x80" + std::string("\10\0\1\2\3\4\5\6\7", 9) + std::string("\4\1\2\3\4\x84\7", 7) + "\x88\x81";
+  const std::string row = std::string("\2\2\0\10", 4) + "\x88\x80" + std::string("\10\0\1\2\3\4\5\6\7", 9) +
+                          std::string("\4\1\2\3\4\x84\7", 7) + "\x88\x81";
   const std::string coded = hdrHeader(8, 2) + row + row;
   for (int round = 0; round < 4000; ++round) {
     std::string damaged = coded;
@@ -370,21 +389,27 @@ TEST(Image8, PngOfEveryKindBecomesRgba) {
     std::vector<std::uint8_t> out;
     png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
     png_infop info = png_create_info_struct(png);
-    png_set_write_fn(png, &out, [](png_structp p, png_bytep data, std::size_t count) {
-      auto& bytes = *static_cast<std::vector<std::uint8_t>*>(png_get_io_ptr(p));
-      bytes.insert(bytes.end(), data, data + count);
-    }, nullptr);
-    png_set_IHDR(png, info, static_cast<png_uint_32>(width), static_cast<png_uint_32>(height), bits, color, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+    png_set_write_fn(
+        png, &out,
+        [](png_structp p, png_bytep data, std::size_t count) {
+          auto& bytes = *static_cast<std::vector<std::uint8_t>*>(png_get_io_ptr(p));
+          bytes.insert(bytes.end(), data, data + count);
+        },
+        nullptr);
+    png_set_IHDR(png, info, static_cast<png_uint_32>(width), static_cast<png_uint_32>(height), bits, color, PNG_INTERLACE_NONE,
+                 PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     more(png, info);
     png_write_info(png, info);
-    for (int y = 0; y < height; ++y) png_write_row(png, rows.data() + rows.size() / static_cast<std::size_t>(height) * static_cast<std::size_t>(y));
+    for (int y = 0; y < height; ++y)
+      png_write_row(png, rows.data() + rows.size() / static_cast<std::size_t>(height) * static_cast<std::size_t>(y));
     png_write_end(png, nullptr);
     png_destroy_write_struct(&png, &info);
     return out;
   };
   const auto nothing = [](png_structp, png_infop) {};
   using Bytes = std::vector<std::uint8_t>;
-  EXPECT_EQ(decodeImage8(encode(16, PNG_COLOR_TYPE_GRAY_ALPHA, 1, 1, {0x80, 0x80, 0x40, 0x40}, nothing), "a").texels, (Bytes{128, 128, 128, 64}));
+  EXPECT_EQ(decodeImage8(encode(16, PNG_COLOR_TYPE_GRAY_ALPHA, 1, 1, {0x80, 0x80, 0x40, 0x40}, nothing), "a").texels,
+            (Bytes{128, 128, 128, 64}));
   const auto palette = encode(1, PNG_COLOR_TYPE_PALETTE, 2, 1, {0x40}, [](png_structp png, png_infop info) {
     const png_color colors[2] = {{1, 2, 3}, {4, 5, 6}};
     const png_byte alpha[1] = {9};
@@ -392,7 +417,8 @@ TEST(Image8, PngOfEveryKindBecomesRgba) {
     png_set_tRNS(png, info, alpha, 1, nullptr);
   });
   EXPECT_EQ(decodeImage8(palette, "a").texels, (Bytes{1, 2, 3, 9, 4, 5, 6, 255}));
-  const auto linear = encode(8, PNG_COLOR_TYPE_RGB, 1, 1, {10, 20, 30}, [](png_structp png, png_infop info) { png_set_gAMA(png, info, 1.0); });
+  const auto linear =
+      encode(8, PNG_COLOR_TYPE_RGB, 1, 1, {10, 20, 30}, [](png_structp png, png_infop info) { png_set_gAMA(png, info, 1.0); });
   EXPECT_EQ(decodeImage8(linear, "a").texels, (Bytes{10, 20, 30, 255}));
 }
 
@@ -410,7 +436,10 @@ TEST(Image8, DamageFailsCleanly) {
       ASSERT_TRUE(test::failsCleanly([&] { decodeImage8(bytes, "damaged"); }));
     }
   }
-  EXPECT_THAT(errorOf([] { decodeImage8(std::vector<std::uint8_t>{'G', 'I', 'F', '8'}, "a.gif"); }), HasSubstr("a.gif: is neither a PNG nor a JPEG"));
+  EXPECT_THAT(errorOf([] {
+                decodeImage8(std::vector<std::uint8_t>{'G', 'I', 'F', '8'}, "a.gif");
+              }),
+              HasSubstr("a.gif: is neither a PNG nor a JPEG"));
 }
 
 // 257 Huffman codes overran a table in the decoder first used here.

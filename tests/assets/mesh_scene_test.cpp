@@ -44,8 +44,9 @@ double area(const Scene& scene) {
 }
 
 const std::string kPlyVertices = "element vertex 4\nproperty float x\nproperty float y\nproperty float z\n";
-const std::string kPlySquare = "ply\nformat ascii 1.0\ncomment a square\n" + kPlyVertices +
-                               "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n";
+const std::string kPlySquare =
+    "ply\nformat ascii 1.0\ncomment a square\n" + kPlyVertices +
+    "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n";
 
 TEST(MeshScene, DefaultMaterial) {
   const Scene scene = loadText("a.ply", kPlySquare);
@@ -67,10 +68,14 @@ TEST(MeshScene, PlyText) {
 
 TEST(MeshScene, PlyBinaryWithEverything) {
   for (const bool big : {false, true}) {
-    std::string text = std::string("ply\r\nformat binary_") + (big ? "big" : "little") + "_endian 1.0\r\nobj_info made by a test\r\nelement camera 1\r\nproperty double angle\r\n" +
-                       "element vertex 3\r\nproperty uchar red\r\nproperty double x\r\nproperty float32 y\r\nproperty float z\r\nproperty short flags\r\n"
-                       "property float nx\r\nproperty float ny\r\nproperty float nz\r\nproperty float texture_u\r\nproperty float texture_v\r\n"
-                       "element face 2\r\nproperty list uint8 uint32 vertex_index\r\nproperty uchar quality\r\nelement edge 5\r\nproperty int unread\r\nend_header\r\n";
+    std::string text =
+        std::string("ply\r\nformat binary_") + (big ? "big" : "little") +
+        "_endian 1.0\r\nobj_info made by a test\r\nelement camera 1\r\nproperty double angle\r\n" +
+        "element vertex 3\r\nproperty uchar red\r\nproperty double x\r\nproperty float32 y\r\nproperty float z\r\nproperty short "
+        "flags\r\n"
+        "property float nx\r\nproperty float ny\r\nproperty float nz\r\nproperty float texture_u\r\nproperty float texture_v\r\n"
+        "element face 2\r\nproperty list uint8 uint32 vertex_index\r\nproperty uchar quality\r\nelement edge 5\r\nproperty int "
+        "unread\r\nend_header\r\n";
     append(text, 1.5, big);
     for (int i = 0; i < 3; ++i) {
       append(text, std::uint8_t{9}, big);
@@ -99,8 +104,10 @@ TEST(MeshScene, PlyBinaryWithEverything) {
 
 TEST(MeshScene, NonManifoldFacesAndIsolatedVerticesSurvive) {
   // Three triangles on one edge, one of them twice, one with a repeated corner, and a vertex that no face uses.
-  const std::string ply = "ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\nproperty float y\nproperty float z\nelement face 5\nproperty list uchar int vertex_indices\nend_header\n"
-                          "0 0 0\n0 0 1\n1 0 0\n0 1 0\n-1 0 0\n9 9 9\n3 0 1 2\n3 0 1 3\n3 0 1 4\n3 0 1 4\n3 0 0 1\n";
+  const std::string ply =
+      "ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\nproperty float y\nproperty float z\nelement face 5\nproperty "
+      "list uchar int vertex_indices\nend_header\n"
+      "0 0 0\n0 0 1\n1 0 0\n0 1 0\n-1 0 0\n9 9 9\n3 0 1 2\n3 0 1 3\n3 0 1 4\n3 0 1 4\n3 0 0 1\n";
   const Scene scene = loadText("a.ply", ply);
   EXPECT_EQ(scene.vertexCount(), 6u);
   EXPECT_THAT(scene.primitives[0].indices, ElementsAre(0, 1, 2, 0, 1, 3, 0, 1, 4, 0, 1, 4, 0, 0, 1));
@@ -129,12 +136,16 @@ TEST(MeshScene, PlyDamage) {
   EXPECT_THAT(with("list uchar int", "list float int"), HasSubstr("list counted by \"float\""));
   EXPECT_THAT(with("vertex_indices\n", "vertex_indices\nproperty list uchar float texcoord\n"), HasSubstr("list \"texcoord\""));
   EXPECT_THAT(with("element vertex 4\n", ""), HasSubstr("property before its first element"));
-  EXPECT_THAT(errorText("a.ply", "ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float y\nproperty float z\nelement face 0\nproperty list uchar int vertex_indices\nend_header\n"),
+  EXPECT_THAT(errorText("a.ply",
+                        "ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float y\nproperty float z\nelement "
+                        "face 0\nproperty list uchar int vertex_indices\nend_header\n"),
               HasSubstr("has no triangles"));
 }
 
 TEST(MeshScene, BinaryPlyWithNan) {
-  std::string text = "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n";
+  std::string text =
+      "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement "
+      "face 1\nproperty list uchar int vertex_indices\nend_header\n";
   for (int i = 0; i < 9; ++i) append(text, i == 4 ? std::nanf("") : 0.0f);
   append(text, std::uint8_t{3});
   for (int i = 0; i < 3; ++i) append(text, i);
@@ -151,7 +162,8 @@ TEST(MeshScene, ConcavePolygonKeepsItsShape) {
 }
 
 TEST(MeshScene, OffVariants) {
-  const std::string square = "# made by hand\nOFF # plain\n\n4 2 0\n0 0 0\n1 0 0 # a comment\n1 1 0\n0 1 0\n3 0 1 2 255 0 0\n3 0 2 3 0.5 0.5 0.5\n";
+  const std::string square =
+      "# made by hand\nOFF # plain\n\n4 2 0\n0 0 0\n1 0 0 # a comment\n1 1 0\n0 1 0\n3 0 1 2 255 0 0\n3 0 2 3 0.5 0.5 0.5\n";
   const Scene plain = loadText("a.off", square);
   EXPECT_THAT(plain.primitives[0].indices, ElementsAre(0, 1, 2, 0, 2, 3)) << "face colours are skipped";
   const Scene normals = loadText("a.off", "STNOFF 3 1 0\n0 0 0 0 0 2 .25 .75\n1 0 0 0 0 1 0 0\n0 1 0 0 0 1 0 0\n3 0 1 2");
@@ -197,18 +209,22 @@ TEST(MeshScene, StlBinaryAndText) {
   const Scene binary = loadText("a.stl", binaryStl(kTwoTriangles, 2));
   EXPECT_EQ(binary.triangleCount(), 2u);
   EXPECT_DOUBLE_EQ(area(binary), 1.0);
-  const Scene text = loadText("A.STL", "solid a b\n facet normal 0 0 1\n  outer loop\n   vertex 0 0 0\n   vertex 1 0 0\n   vertex 0 1e0 0\n  endloop\n endfacet\nendsolid a b\n");
+  const Scene text = loadText("A.STL",
+                              "solid a b\n facet normal 0 0 1\n  outer loop\n   vertex 0 0 0\n   vertex 1 0 0\n   vertex 0 1e0 "
+                              "0\n  endloop\n endfacet\nendsolid a b\n");
   EXPECT_EQ(text.triangleCount(), 1u);
   EXPECT_DOUBLE_EQ(area(text), 0.5);
 }
 
 TEST(MeshScene, StlDamage) {
   EXPECT_THAT(errorText("a.stl", binaryStl(kTwoTriangles, 3)), HasSubstr("3 triangles take 234 bytes, it has 184"));
-  EXPECT_THAT(errorText("a.stl", binaryStl(kTwoTriangles, 0xFFFFFFFF)), HasSubstr("neither a text STL file nor a whole binary one"));
+  EXPECT_THAT(errorText("a.stl", binaryStl(kTwoTriangles, 0xFFFFFFFF)),
+              HasSubstr("neither a text STL file nor a whole binary one"));
   auto nan = kTwoTriangles;
   nan[4] = std::nanf("");
   EXPECT_THAT(errorText("a.stl", binaryStl(nan, 2)), HasSubstr("not finite"));
-  const std::string good = "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid\n";
+  const std::string good =
+      "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid\n";
   ASSERT_EQ(loadText("a.stl", good).triangleCount(), 1u);
   const auto with = [&](const std::string& from, const std::string& to) {
     std::string text = good;
@@ -224,9 +240,12 @@ TEST(MeshScene, StlDamage) {
 TEST(MeshScene, ObjSplitsCornersAndReadsMaterials) {
   const Folder folder;
   test::put(folder / "colour map.png", test::tinyPng());
-  test::put(folder / "a.mtl", std::string("# library\nnewmtl red\nKd 1 0 0\nNs 1000\nd 0.5\nnewmtl wood\nKd 1 1 1\nmap_Kd colour map.png\nKe 2 3 4\nmap_Bump b.png\n"));
-  const auto path = test::put(folder / "a.obj", std::string("mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0 0.5 0.5 0.5\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0.5 0.75 0\nvn 0 0 1\nvn 0 1 0\n"
-                                                            "usemtl wood\nf 1/1/1 2/2/1 \\\n 3/3/1\nf -4/4/2 -2/3/1 -1/1/1\ng part\nusemtl red\nf 1//1 2//1 3//1\nusemtl unknown\nf 1 2 3 4\n"));
+  test::put(folder / "a.mtl", std::string("# library\nnewmtl red\nKd 1 0 0\nNs 1000\nd 0.5\nnewmtl wood\nKd 1 1 1\nmap_Kd colour "
+                                          "map.png\nKe 2 3 4\nmap_Bump b.png\n"));
+  const auto path = test::put(folder / "a.obj", std::string("mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0 0.5 0.5 0.5\nv 0 1 0\nvt 0 "
+                                                            "0\nvt 1 0\nvt 1 1\nvt 0.5 0.75 0\nvn 0 0 1\nvn 0 1 0\n"
+                                                            "usemtl wood\nf 1/1/1 2/2/1 \\\n 3/3/1\nf -4/4/2 -2/3/1 -1/1/1\ng "
+                                                            "part\nusemtl red\nf 1//1 2//1 3//1\nusemtl unknown\nf 1 2 3 4\n"));
   std::vector<std::string> warnings;
   const Scene scene = loadScene(path, [&](const std::string& line) { warnings.push_back(line); });
   ASSERT_EQ(scene.primitives.size(), 3u);
@@ -247,7 +266,8 @@ TEST(MeshScene, ObjSplitsCornersAndReadsMaterials) {
   EXPECT_FLOAT_EQ(red.roughnessFactor, std::pow(2.0f / 1002.0f, 0.25f));
   EXPECT_EQ(scene.primitives[2].triangleCount(), 2u);
   EXPECT_EQ(materialOf(scene, scene.primitives[2]).name, "default");
-  EXPECT_THAT(warnings, testing::UnorderedElementsAre(HasSubstr("map_Bump"), HasSubstr("material unknown is not in its library")));
+  EXPECT_THAT(warnings,
+              testing::UnorderedElementsAre(HasSubstr("map_Bump"), HasSubstr("material unknown is not in its library")));
 
   std::filesystem::remove(folder / "colour map.png");
   EXPECT_THAT(errorOf([&] { loadScene(path); }), testing::AllOf(HasSubstr("a.mtl:8"), HasSubstr("colour map.png")));
@@ -279,7 +299,9 @@ TEST(MeshScene, ObjDamage) {
 }
 
 TEST(MeshScene, RandomDamageFailsCleanly) {
-  std::string plyBinary = "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 2\nproperty list uchar int vertex_indices\nend_header\n";
+  std::string plyBinary =
+      "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement "
+      "face 2\nproperty list uchar int vertex_indices\nend_header\n";
   for (int i = 0; i < 9; ++i) append(plyBinary, static_cast<float>(i));
   for (int f = 0; f < 2; ++f) {
     append(plyBinary, std::uint8_t{3});
@@ -289,9 +311,11 @@ TEST(MeshScene, RandomDamageFailsCleanly) {
       {"a.ply", kPlySquare},
       {"b.ply", plyBinary},
       {"a.off", "NOFF\n3 1 0\n0 0 0 0 0 1\n1 0 0 0 0 1\n0 1 0 0 0 1\n3 0 1 2\n"},
-      {"a.obj", "mtllib none.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\nusemtl x\nf 1/1/1 2/1/1 3/1/1\nf -1//1 -2//1 -3//1\n"},
+      {"a.obj",
+       "mtllib none.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\nusemtl x\nf 1/1/1 2/1/1 3/1/1\nf -1//1 -2//1 -3//1\n"},
       {"a.stl", binaryStl(kTwoTriangles, 2)},
-      {"b.stl", "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid\n"}};
+      {"b.stl",
+       "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid\n"}};
   const Folder folder;
   std::mt19937 random(4);
   for (const auto& [name, text] : files) {
@@ -305,10 +329,18 @@ TEST(MeshScene, RandomDamageFailsCleanly) {
       for (int i = 0; i < flips; ++i) {
         const std::size_t place = random() % damaged.size();
         switch (random() % 4) {
-          case 0: damaged[place] = static_cast<char>(random()); break;
-          case 1: damaged[place] = "0123456789-/. \n"[random() % 15]; break;
-          case 2: damaged.erase(place, 1 + random() % 3); break;
-          default: damaged.insert(place, 1 + random() % 3, "0123456789-/. \n"[random() % 15]); break;
+          case 0:
+            damaged[place] = static_cast<char>(random());
+            break;
+          case 1:
+            damaged[place] = "0123456789-/. \n"[random() % 15];
+            break;
+          case 2:
+            damaged.erase(place, 1 + random() % 3);
+            break;
+          default:
+            damaged.insert(place, 1 + random() % 3, "0123456789-/. \n"[random() % 15]);
+            break;
         }
         if (damaged.empty()) break;
       }

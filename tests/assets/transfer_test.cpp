@@ -138,7 +138,9 @@ struct Parts {
 
   nlohmann::ordered_json& extension() { return json["extensions"]["CHIARO_radiance_transfer"]; }
 
-  std::size_t offsetOfView(int view) const { return json["bufferViews"][static_cast<std::size_t>(view)]["byteOffset"].get<std::size_t>(); }
+  std::size_t offsetOfView(int view) const {
+    return json["bufferViews"][static_cast<std::size_t>(view)]["byteOffset"].get<std::size_t>();
+  }
   std::size_t offsetOfAttribute(const std::string& name) const {
     const auto accessor = json["meshes"][0]["primitives"][0]["attributes"][name].get<std::size_t>();
     return offsetOfView(json["accessors"][accessor]["bufferView"].get<int>());
@@ -164,7 +166,9 @@ struct Parts {
     return GltfWriter::container(text, binary);
   }
 
-  std::string error() { return errorOf([&] { readBytes(bytes()); }); }
+  std::string error() {
+    return errorOf([&] { readBytes(bytes()); });
+  }
 };
 
 TEST(Transfer, RoundTripKeepsEveryBit) {
@@ -313,8 +317,8 @@ TEST(Transfer, RandomDamageBehindCorrectSumsFailsCleanly) {
     for (int i = 0; i < flips; ++i) text[random() % text.size()] = "0123456789-.,{}[]\"eE"[random() % 20];
     auto damaged = nlohmann::ordered_json::parse(text, nullptr, false);
     if (damaged.is_discarded() || !damaged.is_object()) continue;
-    if (!damaged.contains("extensions") || !damaged["extensions"].is_object() || !damaged["extensions"].contains(kTransferExtension) ||
-        !damaged["extensions"][kTransferExtension].is_object())
+    if (!damaged.contains("extensions") || !damaged["extensions"].is_object() ||
+        !damaged["extensions"].contains(kTransferExtension) || !damaged["extensions"][kTransferExtension].is_object())
       continue;
     parts.json = damaged;
     parts.binary[random() % parts.binary.size()] ^= 0x40;
@@ -364,7 +368,10 @@ TEST(Transfer, ErrorsNameTheTrouble) {
   const auto plain = GltfWriter::container(unbaked.json.dump(), unbaked.binary);
   EXPECT_THAT(errorOf([&] { readBytes(plain); }), HasSubstr("run chiaro-precompute"));
   const std::string text = " {\"asset\":{\"version\":\"2.0\"}}";
-  EXPECT_THAT(errorOf([&] { readBytes({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}); }), HasSubstr("run chiaro-precompute"));
+  EXPECT_THAT(errorOf([&] {
+                readBytes({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+              }),
+              HasSubstr("run chiaro-precompute"));
   EXPECT_THAT(errorOf([] { readBakedScene("/nowhere/a.glb"); }), HasSubstr("/nowhere/a.glb"));
 }
 
@@ -376,7 +383,8 @@ TEST(Transfer, FaultyWritersAreFound) {
     parts.sumViews();
     return parts.error();
   };
-  EXPECT_THAT(withWord("POSITION", 0x7FC00000), HasSubstr("primitive 0 of mesh 0 (triangle): POSITION is not finite at element 0"));
+  EXPECT_THAT(withWord("POSITION", 0x7FC00000),
+              HasSubstr("primitive 0 of mesh 0 (triangle): POSITION is not finite at element 0"));
   EXPECT_THAT(withWord("NORMAL", 0x7F800000), HasSubstr("NORMAL is not finite"));
   EXPECT_THAT(withWord("_SSDF_0", 0x00010000), HasSubstr("weights that are not 0 behind the last term"));
 
@@ -455,7 +463,8 @@ TEST(Transfer, WriterRefusesPartsThatDoNotFit) {
 }
 
 TEST(Transfer, UnwritableFolder) {
-  EXPECT_THAT(errorOf([] { writeBakedScene("/nowhere/a.glb", test::tinyBake(), "test"); }, ExitCode::unwritableOutput), HasSubstr("/nowhere/a.glb"));
+  EXPECT_THAT(errorOf([] { writeBakedScene("/nowhere/a.glb", test::tinyBake(), "test"); }, ExitCode::unwritableOutput),
+              HasSubstr("/nowhere/a.glb"));
 }
 
 }  // namespace
