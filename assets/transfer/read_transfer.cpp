@@ -51,8 +51,9 @@ class BakedReader {
     const auto* text = reinterpret_cast<const char*>(bytes_.data());
     const std::string_view head(text, std::min<std::size_t>(bytes_.size(), 64));
     const std::size_t first = head.find_first_not_of(" \t\r\n");
-    // A text glTF is a likely mistake, and it has no transfer in it.
-    if (first != std::string_view::npos && head[first] == '{') failUnbaked();
+    // A text glTF or a mesh is a likely mistake, and has no transfer in it.
+    const bool isText = first != std::string_view::npos && head[first] == '{';
+    if (isText || (!startsLikeGlb(bytes_) && path_.extension() != ".glb")) failUnbaked();
     chunks_ = parseGlb(bytes_, where_);
     requireShallowJson(chunks_.json, where_);
     root_ = json::parse(chunks_.json.begin(), chunks_.json.end(), nullptr, false);

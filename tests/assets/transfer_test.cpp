@@ -372,6 +372,8 @@ TEST(Transfer, ErrorsNameTheTrouble) {
                 readBytes({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
               }),
               HasSubstr("run chiaro-precompute"));
+  const Folder folder;
+  EXPECT_THAT(errorOf([&] { readBakedScene(test::put(folder / "a.obj", std::string("v 0 0 0\n"))); }), HasSubstr("run chiaro-precompute"));
   EXPECT_THAT(errorOf([] { readBakedScene("/nowhere/a.glb"); }), HasSubstr("/nowhere/a.glb"));
 }
 
