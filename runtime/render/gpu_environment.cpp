@@ -64,9 +64,7 @@ GpuEnvironment::GpuEnvironment(const SgEnvironment& environment) {
   radiance_.upload(0, GL_RGB, GL_FLOAT, map.texels.data());
   radiance_.filter(GL_LINEAR, GL_LINEAR);
   radiance_.wrap(GL_REPEAT, GL_CLAMP_TO_EDGE);
-  // A texel of angle a is about as blurred as a lobe of deviation a / 2.
-  const float texelAngle = lobe32::kPi / static_cast<float>(map.height);
-  mapSharpness_ = std::max(4.0f / (texelAngle * texelAngle), 2.0f * pyramid.finestSharpness);
+  mapSharpness_ = std::max(unfilteredSharpness(map.width), 2.0f * pyramid.finestSharpness);
 
   const int levels = static_cast<int>(pyramid.layer0.size());
   pyramid_ = gl::Texture::makeCubeArray(GL_RGBA32F, pyramid.finestResolution, 2, levels);

@@ -1,0 +1,192 @@
+// Pictures of the renderer. Where the truth is known in closed form it is used; else brute force, on a scene without any transfer
+// error, so that a bound speaks of the shading alone. tests/programs compares whole scenes.
+#include "runtime/render/renderer.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "assets/builtin/builtin_scene.h"
+#include "tests/lobe/gl_test_main.h"
+#ifdef CHIARO_WITH_REFERENCE
+#include "precompute/reference/reference.h"
+#endif
+
+namespace chiaro {
+namespace {
+
+/// What a bake of an unoccluded scene gives: no terms, everything visible.
+BakedScene unoccluded(Scene scene, std::uint8_t visibility = 255) {
+  BakedScene baked;
+  baked.scene = std::move(scene);
+  Transfer& t = baked.transfer;
+  t.resolution = 16;
+  t.directionCount = 32;
+  t.directionSharpness = 32.0f;
+  for (int i = 0; i < 32; ++i) {
+    const float z = 1.0f - (2.0f * static_cast<float>(i) + 1.0f) / 32.0f, s = std::sqrt(1.0f - z * z), phi = static_cast<float>(i) * 2.39996323f;
+    t.directions.emplace_back(s * std::cos(phi), s * std::sin(phi), z);
+  }
+  for (const auto& primitive : baked.scene.primitives) t.primitives.push_back({{}, std::vector<std::uint8_t>(primitive.positions.size() * 32, visibility)});
+  return baked;
+}
+
+Material material(float roughness, float metallic, glm::vec3 color, float anisotropy = 0.0f) {
+  Material m;
+  m.roughnessFactor = roughness;
+  m.metallicFactor = metallic;
+  m.baseColorFactor = glm::vec4(color, 1.0f);
+  m.anisotropyStrength = anisotropy;
+  return m;
+}
+
+BakedScene sphereOf(const Material& m) {
+  Scene scene = builtinScene("sphere");
+  scene.materials = {m};
+  for (auto& primitive : scene.primitives) primitive.material = 0;
+  return unoccluded(std::move(scene));
+}
+
+RenderSettings smallPicture(int size) {
+  RenderSettings settings;
+  settings.width = settings.height = size;
+  settings.background = false;
+  return settings;
+}
+
+int covered(const ImageRgba& image) {
+  int count = 0;
+  for (const auto& texel : image.texels) count += texel.a > 0.99f;
+  return count;
+}
+
+// Under radiance 1 from everywhere a white metal reflects its directional albedo: single scattering loses energy when rough, never gains.
+// A white dielectric of the glTF model does gain at grazing angles (its diffuse part gives up the cosine-weighted mean of the Fresnel
+// term, the reflection adds its value at that view); its own bound is .96 + 1.
+TEST(Renderer, WhiteFurnace) {
+  const SgEnvironment white = prepareEnvironment(loadEnvironment("white"));
+  for (const float metallic : {0.0f, 1.0f}) {
+    for (const float roughness : {0.0f, 0.2f, 0.5f, 0.55f, 1.0f}) {
+      const BakedScene baked = sphereOf(material(roughness, metallic, glm::vec3(1)));
+      Renderer renderer(baked);
+      renderer.setEnvironment(white);
+      renderer.render(defaultCamera(baked.scene, 1), smallPicture(32));
+      const ImageRgba image = renderer.readRadiance();
+      EXPECT_GE(covered(image), 100);
+      for (const auto& texel : image.texels) {
+        if (!(texel.a > 0.99f)) continue;
+        // 2 %: interpolation of the albedo table at grazing angles.
+        EXPECT_LE(texel.g, metallic > 0.5f ? 1.02f : 1.96f) << roughness << " " << metallic;
+        EXPECT_GE(texel.g, roughness < 0.3f ? 0.9f : 0.25f) << roughness << " " << metallic;
+      }
+    }
+  }
+}
+
+// With every visible fraction 0 nothing diffuse is left; shadows off brings it all back.
+TEST(Renderer, ShadowsDarkenAndCanBeTurnedOff) {
+  Scene scene = builtinScene("sphere");
+  scene.materials = {material(1, 0, glm::vec3(0.5f))};
+  for (auto& primitive : scene.primitives) primitive.material = 0;
+  const BakedScene hidden = unoccluded(scene, 0);
+  Renderer renderer(hidden);
+  renderer.setEnvironment(prepareEnvironment(loadEnvironment("overcast")));
+  RenderSettings settings = smallPicture(32);
+  renderer.render(defaultCamera(scene, 1), settings);
+  const ImageRgba dark = renderer.readRadiance();
+  settings.shadows = false;
+  renderer.render(defaultCamera(scene, 1), settings);
+  const ImageRgba lit = renderer.readRadiance();
+  for (std::size_t i = 0; i < dark.texels.size(); ++i) {
+    if (!(lit.texels[i].a > 0.99f)) continue;
+    EXPECT_LE(dark.texels[i].g, 1e-3f);
+    EXPECT_GE(lit.texels[i].g, 0.05f);
+  }
+}
+
+// Materials at their extremes and a tilted camera: every pixel finite and not negative.
+TEST(Renderer, ExtremesStayFinite) {
+  const SgEnvironment sunny = prepareEnvironment(loadEnvironment("sunny"));
+  for (const float roughness : {0.0f, 0.01f, 0.45f, 0.6f, 1.0f}) {
+    for (const float anisotropy : {0.0f, 1.0f}) {
+      const BakedScene baked = sphereOf(material(roughness, 1, glm::vec3(1, 0.5f, 0), anisotropy));
+      Renderer renderer(baked);
+      renderer.setEnvironment(sunny);
+      renderer.render(defaultCamera(baked.scene, 1), smallPicture(48));
+      for (const auto& texel : renderer.readRadiance().texels)
+        for (int c = 0; c < 3; ++c) EXPECT_TRUE(texel[c] >= 0.0f && texel[c] <= 1e6f) << texel[c] << " at roughness " << roughness;
+    }
+  }
+}
+
+// A full turn of the environment is no turn; half a turn about +Y shows what half a turn of the camera shows.
+TEST(Renderer, EnvironmentRotatesWithTheCamera) {
+  const BakedScene baked = sphereOf(material(0.3f, 1, glm::vec3(0.8f)));
+  Renderer renderer(baked);
+  renderer.setEnvironment(prepareEnvironment(loadEnvironment("windows")));
+  RenderSettings settings = smallPicture(48);
+  const Bounds bounds = boundsOf(baked.scene);
+  renderer.render(lookAt({0, 0.5f, 3}, {0, 0, 0}, 0.8f, bounds), settings);
+  const ImageRgba front = renderer.readRadiance();
+  settings.worldFromEnvironment = glm::mat3(glm::vec3(-1, 0, 0), glm::vec3(0, 1, 0), glm::vec3(0, 0, -1));
+  renderer.render(lookAt({0, 0.5f, -3}, {0, 0, 0}, 0.8f, bounds), settings);
+  const ImageRgba turned = renderer.readRadiance();
+  double worst = 0;
+  for (std::size_t i = 0; i < front.texels.size(); ++i) {
+    const double difference = glm::length(glm::vec3(front.texels[i] - turned.texels[i])), size = 0.05 + glm::length(glm::vec3(front.texels[i]));
+    // The tessellated silhouette differs by a pixel between the two views.
+    if (front.texels[i].a > 0.99f && turned.texels[i].a > 0.99f) worst = std::max(worst, difference / size);
+  }
+  EXPECT_LE(worst, 0.05);
+}
+
+TEST(Renderer, DriverHasNothingToSay) {
+  const BakedScene baked = sphereOf(material(0.3f, 0, glm::vec3(0.8f)));
+  Renderer renderer(baked);
+  renderer.setEnvironment(prepareEnvironment(loadEnvironment("white")));
+  RenderSettings settings = smallPicture(16);
+  settings.background = true;
+  settings.supersample = 2;
+  renderer.render(defaultCamera(baked.scene, 1), settings);
+  EXPECT_EQ(renderer.readDisplay().texels.size(), 16u * 16u * 4u);
+  EXPECT_EQ(renderer.timings().passes.back().first, "total");
+  EXPECT_NO_THROW(testContext().debugLog().requireClean("a frame"));
+}
+
+#ifdef CHIARO_WITH_REFERENCE
+// The SG shading alone: at least 32 dB on a metal sphere (a dielectric's reflection counts for less), tone-mapped, object pixels only.
+TEST(Renderer, UnoccludedSphereMatchesBruteForce) {
+  for (const std::string name : {"sunny", "overcast", "windows"}) {
+    const Environment environment = loadEnvironment(name);
+    const SgEnvironment prepared = prepareEnvironment(environment);
+    const float exposure = autoExposure(environment);
+    for (const float roughness : {0.2f, 0.4f, 0.7f}) {
+      const BakedScene baked = sphereOf(material(roughness, 1, glm::vec3(0.9f, 0.7f, 0.5f)));
+      const Camera camera = defaultCamera(baked.scene, 1);
+      Renderer renderer(baked);
+      renderer.setEnvironment(prepared);
+      renderer.render(camera, smallPicture(64));
+      const ImageRgba picture = renderer.readRadiance();
+      ReferenceSettings settings;
+      settings.width = settings.height = 64;
+      settings.samplesPerPixel = 512;
+      settings.background = false;
+      const ImageRgba truth = renderReference(baked.scene, environment, camera, settings).radiance;
+      double squares = 0, count = 0;
+      for (std::size_t i = 0; i < truth.texels.size(); ++i) {
+        if (!(truth.texels[i].a > 0.99f && picture.texels[i].a > 0.99f)) continue;
+        const glm::vec3 d = displayColor(glm::vec3(picture.texels[i]), exposure, ToneMap::neutral) - displayColor(glm::vec3(truth.texels[i]), exposure, ToneMap::neutral);
+        squares += glm::dot(d, d);
+        count += 3;
+      }
+      ASSERT_GE(count, 1000);
+      const double psnr = 10 * std::log10(count / squares);
+      std::printf("%s, roughness %.1f: %.1f dB\n", name.c_str(), static_cast<double>(roughness), psnr);
+      EXPECT_GE(psnr, 32.0) << name << " " << roughness;
+    }
+  }
+}
+#endif
+
+}  // namespace
+}  // namespace chiaro
