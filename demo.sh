@@ -23,13 +23,13 @@ out=build/demo
 mkdir -p "$out"
 
 say "baking the built-in scene"
-"$bin/chiaro-precompute" builtin:ornament -o "$out/ornament.glb" --json "$out/bake.json"
+"$bin/chiaro-precompute" builtin:ornament --terms 256 -o "$out/ornament.glb" --json "$out/bake.json"
 
 say "relighting it"
 picture() {
   local name=$1
   shift
-  "$bin/chiaro-view" "$out/ornament.glb" --headless --size 960x600 --supersample 2 "$@" -o "$out/$name.png" --quiet
+  "$bin/chiaro-view" "$out/ornament.glb" --headless --size 720x450 --supersample 2 "$@" -o "$out/$name.png" --quiet
   printf '%s\n' "$out/$name.png"
 }
 for environment in sunny overcast windows; do
@@ -38,7 +38,7 @@ done
 picture sunny_turned --environment sunny --rotate-environment-deg 120
 picture sunny_rough --environment sunny --roughness 0.7
 picture windows_polished_metal --environment windows --roughness 0.15 --metallic 1
-"$bin/chiaro-view" "$out/ornament.glb" --headless --environment sunny --size 960x600 --frames 3 --json "$out/timings.json" --quiet
+"$bin/chiaro-view" "$out/ornament.glb" --headless --environment sunny --size 720x450 --frames 3 --json "$out/timings.json" --quiet
 
 say "comparing it with brute force"
 "$bin/chiaro-report" "$out/ornament.glb" -o "$out/report"
