@@ -54,7 +54,7 @@ class SsdfTransform {
   std::vector<Group> tileBounds_;      ///< 4x4 texels, by tile
   std::vector<glm::vec3> boundary_;
   Points all_, near_, nearest_;
-  alignas(64) float folded_[3][16];
+  alignas(64) float folded_[3][16] = {};
   AlignedFloats chord2_;
   std::size_t chordCapacity_ = 0;
 };
