@@ -1,4 +1,5 @@
 // OBJ, PLY, OFF and STL, well formed and not.
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <set>

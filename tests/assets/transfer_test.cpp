@@ -1,6 +1,7 @@
 // The baked file: what goes in comes out, and nothing that was damaged gets in.
 #include "assets/transfer/transfer.h"
 
+#include <algorithm>
 #include <cstring>
 #include <memory>
 #include <nlohmann/json.hpp>

@@ -89,7 +89,7 @@ TEST(GlslParityTest, FindsABrokenConstant) {
       return text;
     };
   };
-  const auto failures = [](const char* name, const gl::ShaderReader& reader) {
+  const auto failures = [](const std::string& name, const gl::ShaderReader& reader) {
     const Case& c = caseNamed(name);
     const Comparison result = compare(c, runDouble(c), runGlsl(c, reader), "broken");
     std::fputs(result.report.c_str(), stdout);
