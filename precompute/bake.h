@@ -27,6 +27,7 @@ struct RepairReport {
   std::size_t isolatedVertices = 0;      ///< used by no triangle: dropped
   std::size_t degenerateTriangles = 0;   ///< zero area or a repeated corner: dropped
   std::size_t duplicateTriangles = 0;    ///< same corners, same winding: dropped
+  std::size_t trianglesTurned = 0;       ///< of an inside-out mesh without normals: winding reversed
   std::size_t nonManifoldEdges = 0;      ///< kept; split for the half-edge mesh
   std::size_t boundaryEdges = 0;
   std::size_t normalsComputed = 0;       ///< vertices that got a normal

@@ -4,7 +4,31 @@
 #include "precompute/mesh/tangents.h"
 #include "precompute/mesh/weld.h"
 
+#include <cmath>
+#include <utility>
+
 namespace chiaro {
+namespace {
+
+/// Scans are often wound inside out (the bunny is), and a mesh file has no other say on which side is the front. The volume that the
+/// triangles enclose about their middle is negative then; a flat or balanced mesh, whose cones cancel, is left as it is.
+void turnInsideOut(Primitive& primitive, RepairReport& report) {
+  if (primitive.positions.empty()) return;
+  glm::dvec3 middle(0.0);
+  for (const auto& position : primitive.positions) middle += glm::dvec3(position) / static_cast<double>(primitive.positions.size());
+  const auto corner = [&](std::size_t i) { return glm::dvec3(primitive.positions[primitive.indices[i]]) - middle; };
+  double volume = 0.0, magnitude = 0.0;
+  for (std::size_t i = 0; i + 2 < primitive.indices.size(); i += 3) {
+    const double cone = glm::dot(corner(i), glm::cross(corner(i + 1), corner(i + 2)));
+    volume += cone;
+    magnitude += std::abs(cone);
+  }
+  if (!(volume < -0.2 * magnitude)) return;
+  for (std::size_t i = 0; i + 2 < primitive.indices.size(); i += 3) std::swap(primitive.indices[i + 1], primitive.indices[i + 2]);
+  report.trianglesTurned += primitive.triangleCount();
+}
+
+}  // namespace
 
 Scene prepareScene(const Scene& scene, float creaseAngle, RepairReport& report) {
   report = {};
@@ -13,6 +37,7 @@ Scene prepareScene(const Scene& scene, float creaseAngle, RepairReport& report) 
     const auto& material = materialOf(result, primitive);
     if (!needsTangents(material, primitive)) primitive.tangents.clear();  // they must not keep equal vertices apart
     cleanPrimitive(primitive, report);
+    if (primitive.normals.empty()) turnInsideOut(primitive, report);
     const auto edges = buildHalfEdges(primitive.positions, primitive.indices, weldPositions(primitive.positions));
     report.nonManifoldEdges += edges.nonManifoldEdges;
     report.boundaryEdges += edges.boundaryEdges;

@@ -37,6 +37,7 @@ std::string bakeJson(const BakeRun& run, const BakeReport& report) {
         {"isolated_vertices", repairs.isolatedVertices},
         {"degenerate_triangles", repairs.degenerateTriangles},
         {"duplicate_triangles", repairs.duplicateTriangles},
+        {"triangles_turned", repairs.trianglesTurned},
         {"non_manifold_edges", repairs.nonManifoldEdges},
         {"boundary_edges", repairs.boundaryEdges},
         {"normals_computed", repairs.normalsComputed},

@@ -342,5 +342,25 @@ TEST(PrepareScene, CountsAScanAsItsMakersDid) {
   expectUnitAndInRange(scene);
 }
 
+// A closed mesh wound inwards, with no normals to say which side is meant, is turned; with outward winding, flat or with normals it is not.
+TEST(PrepareScene, TurnsAMeshThatIsInsideOut) {
+  const auto flipped = [](Primitive primitive) {
+    for (std::size_t i = 0; i + 2 < primitive.indices.size(); i += 3) std::swap(primitive.indices[i + 1], primitive.indices[i + 2]);
+    return primitive;
+  };
+  RepairReport report;
+  const Scene turned = prepareScene(sceneOf(flipped(sphere(8, 12, 1.0f))), kSixtyDegrees, report);
+  EXPECT_EQ(report.trianglesTurned, turned.triangleCount());
+  const Primitive& ball = turned.primitives.front();
+  for (std::size_t v = 0; v < ball.positions.size(); ++v) EXPECT_GE(glm::dot(ball.positions[v], ball.normals[v]), 0.9f);
+
+  prepareScene(sceneOf(sphere(8, 12, 1.0f)), kSixtyDegrees, report);
+  EXPECT_EQ(report.trianglesTurned, 0u);
+  Primitive inwards = flipped(sphere(8, 12, 1.0f));
+  for (const auto& position : inwards.positions) inwards.normals.push_back(-glm::normalize(position));
+  prepareScene(sceneOf(inwards), kSixtyDegrees, report);
+  EXPECT_EQ(report.trianglesTurned, 0u);
+}
+
 }  // namespace
 }  // namespace chiaro
