@@ -8,6 +8,7 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <optional>
 #include <utility>
 
@@ -78,6 +79,16 @@ struct Window::Callbacks {
 };
 
 Window::Window(glm::ivec2 size, const std::string& title) {
+  const auto isSet = [](const char* name) {
+    const char* value = std::getenv(name);
+    return value != nullptr && *value != '\0';
+  };
+  // GLFW 3.4 would ask libwayland even then, which prints a complaint of its own.
+  if (!isSet("DISPLAY") && !isSet("WAYLAND_DISPLAY"))
+    throw Error(ExitCode::failed, "window", "there is no display", "set DISPLAY or WAYLAND_DISPLAY, or use --headless");
+#ifdef GLFW_PLATFORM
+  if (!isSet("WAYLAND_DISPLAY")) glfwInitHint(GLFW_PLATFORM, GLFW_PLATFORM_X11);
+#endif
   if (glfwInit() != GLFW_TRUE) throw windowError("cannot open one");
   glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 4);
   glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 5);
