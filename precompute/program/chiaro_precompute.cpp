@@ -1,9 +1,11 @@
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
 #include <numbers>
+#include <string_view>
 
 #include "assets/builtin/builtin_scene.h"
 #include "assets/file.h"
@@ -12,6 +14,7 @@
 #include "assets/program/progress_bar.h"
 #include "assets/scene/load_scene.h"
 #include "assets/transfer/transfer.h"
+#include "assets/transfer/transfer_format.h"
 #include "precompute/bake.h"
 #include "precompute/program/bake_json.h"
 
@@ -60,6 +63,13 @@ void declare(CLI::App& app, Options& options) {
   app.add_flag("-v,--verbose", options.verbose, "Print warnings and every figure")->excludes(quiet);
 }
 
+/// Whether a bake wrote this file: it may be baked again in its own place. An artist's own file must not be replaced.
+bool isBaked(const std::filesystem::path& path) {
+  const auto bytes = readFile(path);
+  const std::string_view mark = kTransferExtension;
+  return std::search(bytes.begin(), bytes.end(), mark.begin(), mark.end()) != bytes.end();
+}
+
 void finish(Options& options) {
   auto& settings = options.settings;
   const auto inRange = [](const char* name, double value, double least, double most) {
@@ -79,8 +89,10 @@ void finish(Options& options) {
 
   if (options.output.extension() != ".glb")
     throw usageError("--output", "\"" + options.output.string() + "\" does not end in .glb", "name it so: it is a binary glTF");
-  if (!options.json.empty() && options.json == options.output)
-    throw usageError("--json", "names the same file as --output", "give two names");
+  if (isSameFile(options.json, options.output)) throw usageError("--json", "names the same file as --output", "give two names");
+  const auto lost = [](const char* option) { return usageError(option, "names the scene itself, which would be lost", "give another name"); };
+  if (isSameFile(options.json, options.scene)) throw lost("--json");
+  if (isSameFile(options.output, options.scene) && !isBaked(options.scene)) throw lost("--output");
   // An hour's work should not be lost to a typing mistake.
   requireWritable(options.output);
   if (!options.json.empty()) requireWritable(options.json);

@@ -65,8 +65,11 @@ void checkOutputs(const ViewOptions& options, const ViewOptionTexts& texts) {
     requireWritable(options.picture);
   }
   if (!options.timings.empty()) requireWritable(options.timings);
-  if (!options.picture.empty() && options.picture == options.timings)
-    throw usageError("--json", "names the same file as --output", "give two names");
+  if (isSameFile(options.picture, options.timings)) throw usageError("--json", "names the same file as --output", "give two names");
+  if (isSameFile(options.timings, options.scene)) throw usageError("--json", "names the scene itself, which would be lost", "give another name");
+  for (const auto& environment : options.environments)
+    for (const auto& [path, option] : {std::pair{options.picture, "--output"}, std::pair{options.timings, "--json"}})
+      if (isSameFile(path, environment)) throw usageError(option, "names the environment itself, which would be lost", "give another name");
 }
 
 void checkEnvironment(const std::string& name) {

@@ -80,7 +80,8 @@ TEST(Precompute, WrongUsageIsOneLineAndTwo) {
       {{"--resolution", "many"}, "--resolution"}, {{"--terms", "0"}, "--terms"},          {{"--terms", "257"}, "--terms"},
       {{"--directions", "9"}, "--directions"},  {{"--directions", "4"}, "--directions"},   {{"--crease-angle-deg", "nan"}, "--crease-angle-deg"},
       {{"--crease-angle-deg", "-1"}, "--crease-angle-deg"}, {{"--threads", "-2"}, "--threads"}, {{"--frobnicate"}, "--frobnicate"},
-      {{"--quiet", "--verbose"}, "verbose"},    {{"--json", "out.glb"}, "--json"}};
+      {{"--quiet", "--verbose"}, "verbose"},    {{"--json", "out.glb"}, "--json"},
+      {{"--json", "./out.glb"}, "--json"}};
   for (const auto& [options, about] : cases) {
     std::vector<std::string> arguments{"builtin:sphere", "-o", "out.glb"};
     arguments.insert(arguments.end(), options.begin(), options.end());
@@ -89,6 +90,16 @@ TEST(Precompute, WrongUsageIsOneLineAndTwo) {
   expectOneLine(precompute({"builtin:sphere", "-o", "out.ply"}), ExitCode::usage, ".glb");
   expectOneLine(precompute({"builtin:nonesuch", "-o", "out.glb"}), ExitCode::usage, "nonesuch");
   EXPECT_FALSE(std::filesystem::exists("out.glb"));
+}
+
+TEST(Precompute, NeverWritesOverItsScene) {
+  std::ofstream("source.glb") << "precious";
+  std::filesystem::remove("link.glb");  // of an earlier run
+  std::filesystem::create_symlink("source.glb", "link.glb");
+  for (const char* output : {"source.glb", "./source.glb", "link.glb"})
+    expectOneLine(precompute({"source.glb", "-o", output}), ExitCode::usage, "--output: names the scene itself");
+  expectOneLine(precompute({"source.glb", "-o", "out.glb", "--json", "source.glb"}), ExitCode::usage, "--json: names the scene itself");
+  EXPECT_EQ(std::filesystem::file_size("source.glb"), 8u);
 }
 
 TEST(Precompute, UnreadableInputIsOneLineAndThree) {
@@ -105,6 +116,8 @@ TEST(Precompute, UnwritableOutputIsFoundBeforeTheWork) {
   std::filesystem::create_directory("folder.glb");
   expectOneLine(precompute({"missing.ply", "-o", "folder.glb"}), ExitCode::unwritableOutput, "folder.glb");
   expectOneLine(precompute({"missing.ply", "-o", "out.glb", "--json", "no/such/folder/out.json"}), ExitCode::unwritableOutput, "out.json");
+  expectOneLine(precompute({"missing.ply", "-o", std::string(300, 'a') + ".glb"}), ExitCode::unwritableOutput, "too long");
+  expectOneLine(precompute({"missing.ply", "-o", "/proc/out.glb"}), ExitCode::unwritableOutput, "/proc/out.glb");
 }
 
 TEST(Precompute, WritesASceneAndItsFigures) {
