@@ -108,6 +108,7 @@ void printRepairs(const RepairReport& repairs) {
       {repairs.isolatedVertices, "unused vertices dropped"},
       {repairs.degenerateTriangles, "triangles without area dropped"},
       {repairs.duplicateTriangles, "repeated triangles dropped"},
+      {repairs.trianglesTurned, "triangles of an inside-out mesh turned"},
       {repairs.nonManifoldEdges, "non-manifold edges kept"},
       {repairs.boundaryEdges, "boundary edges"},
       {repairs.normalsComputed, "normals computed"},
@@ -122,6 +123,10 @@ void printSummary(const Options& options, const BakeRun& run, const BakeReport& 
   std::printf("%s: %zu vertices, %zu triangles, %d terms, %.0f bytes a vertex, %.2f million rays, %.1f s\n", options.output.c_str(),
               report.vertices, report.triangles, report.terms, report.bytesPerVertex, static_cast<double>(report.raysTraced) * 1e-6,
               run.loadSeconds + report.seconds.total + run.writeSeconds);
+  // What the user made and will miss in the picture is said without being asked for; each line of it with --verbose.
+  if (!run.warnings.empty() && !options.verbose)
+    std::printf("%zu warning%s: %s%s\n", run.warnings.size(), run.warnings.size() == 1 ? "" : "s", run.warnings.front().c_str(),
+                run.warnings.size() == 1 ? "" : ", ... (--verbose or --json lists them)");
   if (options.verbose) {
     std::printf("repairs:\n");
     printRepairs(report.repairs);

@@ -156,6 +156,16 @@ TEST(Precompute, QuietIsQuietAndVerboseSaysEverything) {
   for (const char* word : {"ssdf_rms_radians", "normals computed", "peak memory"}) EXPECT_NE(verbose.out.find(word), std::string::npos) << word;
 }
 
+TEST(Precompute, SaysUnaskedWhatItLeavesOut) {
+  std::ofstream("lines.obj") << "mtllib missing.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl gone\nf 1 2 3\n";
+  std::vector<std::string> arguments{"lines.obj", "-o", "lines.glb"};
+  arguments.insert(arguments.end(), kFast.begin(), kFast.end());
+  const auto finished = precompute(arguments);
+  EXPECT_EQ(finished.code, 0) << finished.err;
+  EXPECT_NE(finished.out.find("warning"), std::string::npos) << finished.out;
+  EXPECT_NE(finished.out.find("missing.mtl"), std::string::npos) << finished.out;
+}
+
 TEST(Precompute, ThreadsDoNotChangeTheFileSeedsDo) {
   ASSERT_EQ(bakeTable("one.glb", {"-q", "--threads", "1"}).code, 0);
   ASSERT_EQ(bakeTable("five.glb", {"-q", "--threads", "5"}).code, 0);
