@@ -8,6 +8,7 @@
 #include <string>
 
 #include "assets/error.h"
+#include "precompute/bake_clustered.h"
 #include "precompute/bake_error.h"
 #include "precompute/compression/encode.h"
 #include "precompute/compression/pca.h"
@@ -155,6 +156,12 @@ BakedScene bake(const Scene& scene, const BakeSettings& settings, BakeReport& re
   transfer.directions = fibonacciDirections(settings.directionCount);
 
   const auto viewpoints = viewpointsOf(baked.scene, rays);
+  if (settings.compression != Compression::pca) {
+    bakeClustered(rays, viewpoints, settings, baked, report, stage);
+    baked.facts = factsOf(settings, report);
+    report.seconds.total = secondsSince(start);
+    return baked;
+  }
   const VisibleFractions visibleFractions(grid, transfer.directions, settings.directionSharpness);
   const auto traced = traceScene(rays, grid, viewpoints, visibleFractions, settings, stage("visibility"));
   storeFractions(traced, baked.scene, transfer);

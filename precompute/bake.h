@@ -11,9 +11,22 @@
 
 namespace chiaro {
 
+/// How transfer is compressed (docs/format.md).
+enum class Compression {
+  pca,        ///< the paper's: global principal components of the SSDF
+  clustered,  ///< the same by clusters, each with components of its own
+  joint,      ///< clusters of the SSDF together with visibility prefiltered for broad lobes
+};
+
 struct BakeSettings {
+  Compression compression = Compression::pca;
   int resolution = 64;              ///< octahedral texels a side of the traced and stored sphere, 16..256
-  int terms = 48;                   ///< PCA terms, 1..256 (fewer are kept when the scene needs fewer)
+  int samplingResolution = 0;       ///< of what is traced: `resolution` times a power of two; 0: the same
+  int terms = 48;                   ///< PCA terms, 1..256 (fewer are kept when the scene needs fewer); clustered: the most a lookup fetches
+  int clusters = 0;                 ///< clustered forms: 1..4096; 0: by the number of vertices
+  int functions = 0;                ///< clustered forms: that all clusters share, 1..1024; 0: by the number of vertices
+  int weightBits = 8;               ///< clustered forms: 8 or 16
+  int functionBits = 0;             ///< clustered forms: 16, 8, 4; 0: 8 or 4 by what each is worth
   int directionCount = 32;          ///< fixed broad lobes per vertex, a multiple of 4, 8..64
   float directionSharpness = 32.0f;
   float creaseAngle = 1.0471976f;   ///< radians; sharper edges are split where the file has no normals

@@ -192,6 +192,11 @@ class BakedReader {
     if (!(t.directionSharpness >= 0.0f) || !std::isfinite(t.directionSharpness))
       fail("\"directionSharpness\" is not a number from 0");
     readDirections();
+    if (e.contains("clustered")) {
+      readClustered(e["clustered"]);
+      readFacts();
+      return;
+    }
     const auto texels = static_cast<std::size_t>(t.resolution) * static_cast<std::size_t>(t.resolution);
     if (t.terms > 0 || e.contains("mean")) t.mean = elements<float>(viewIndex(e, "mean", kTransferExtension), texels, "the mean");
     requireFinite(t.mean, "the mean");
@@ -229,6 +234,111 @@ class BakedReader {
       if (!(scale > 0.0f)) fail("a weight scale is not positive");
   }
 
+  void readClustered(const json& c) {
+    Transfer& t = baked_.transfer;
+    auto& out = t.clustered;
+    const std::string owner = "\"clustered\"";
+    if (t.resolution < 1) fail("\"resolution\" of clustered transfer is not positive");
+    const json& levels = listOf(c, "levels", owner);
+    if (levels.size() > kMostTransferLevels) fail("has more than " + std::to_string(kMostTransferLevels) + " levels");
+    for (const auto& level : levels) {
+      const auto& sharpness = member(level, "sharpness", "a level");
+      const float value = sharpness.is_number() ? sharpness.get<float>() : -1.0f;
+      if (!(value > (out.levels.empty() ? 0.0f : out.levels.back().sharpness)) || !std::isfinite(value)) fail("its levels do not get sharper");
+      out.levels.push_back({value, static_cast<int>(integer(level, "resolution", 1, kMostTransferResolution, "a level"))});
+    }
+    const auto columns = t.columns();
+    t.mean = elements<float>(viewIndex(*extension_, "mean", kTransferExtension), columns, "the mean");
+    requireFinite(t.mean, "the mean");
+    readFunctions(c, columns, owner);
+    readClusters(c, owner);
+  }
+
+  void readFunctions(const json& c, std::size_t columns, const std::string& owner) {
+    auto& f = baked_.transfer.clustered.functions;
+    const auto count = static_cast<std::size_t>(integer(c, "functionCount", 0, static_cast<std::int64_t>(kMostTransferFunctions), owner));
+    if (count == 0) return;
+    f.bits = elements<std::uint8_t>(viewIndex(c, "functionBits", owner), count, "the list of function bits");
+    f.scale = elements<float>(viewIndex(c, "functionScales", owner), count, "the list of function scales");
+    requireFinite(f.scale, "the list of function scales");
+    std::size_t bytes = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      if (f.bits[i] != 16 && f.bits[i] != 8 && f.bits[i] != 4) fail("a function has " + std::to_string(f.bits[i]) + " bits a value");
+      if (!(f.scale[i] > 0.0f)) fail("a function scale is not positive");
+      bytes += PackedFunctions::bytesOf(f.bits[i], columns);
+    }
+    f.data = elements<std::uint8_t>(viewIndex(c, "functions", owner), bytes, "the list of functions");
+    requireFinite(f.unpack(columns), "the list of functions");
+  }
+
+  void readClusters(const json& c, const std::string& owner) {
+    Transfer& t = baked_.transfer;
+    auto& out = t.clustered;
+    const auto count = static_cast<std::size_t>(integer(c, "clusterCount", 1, static_cast<std::int64_t>(kMostTransferClusters), owner));
+    const auto functions = out.functions.count();
+    out.weightBits = static_cast<int>(integer(c, "weightBits", 8, 16, owner));
+    if (out.weightBits != 8 && out.weightBits != 16) fail("\"weightBits\" is neither 8 nor 16");
+    const auto terms = elements<std::uint16_t>(viewIndex(c, "clusterTerms", owner), count, "the list of cluster terms");
+    std::size_t all = 0;
+    for (const auto k : terms) {
+      if (k > t.terms) fail("a cluster has more terms than \"terms\"");
+      all += k;
+    }
+    std::vector<float> meanScales(count, 0.0f), weightScales;
+    std::vector<std::int16_t> means;
+    std::vector<std::int8_t> components;
+    if (functions > 0) {
+      meanScales = elements<float>(viewIndex(c, "clusterMeanScales", owner), count, "the list of mean scales");
+      requireFinite(meanScales, "the list of mean scales");
+      means = elements<std::int16_t>(viewIndex(c, "clusterMeans", owner), count * functions, "the list of cluster means");
+    } else if (all > 0) {
+      fail("has cluster terms without functions");
+    }
+    if (all > 0) {
+      weightScales = elements<float>(viewIndex(c, "weightScales", owner), all, "the list of weight scales");
+      requireFinite(weightScales, "the list of weight scales");
+      components = elements<std::int8_t>(viewIndex(c, "components", owner), all * functions, "the list of components");
+    }
+    for (const float s : meanScales)
+      if (!(s >= 0.0f)) fail("a mean scale is negative");
+    for (const float s : weightScales)
+      if (!(s > 0.0f)) fail("a weight scale is not positive");
+    std::size_t term = 0;
+    const auto part = [](const auto& values, std::size_t first, std::size_t size) {
+      const auto begin = values.begin() + static_cast<std::ptrdiff_t>(first);
+      return std::vector(begin, begin + static_cast<std::ptrdiff_t>(size));
+    };
+    for (std::size_t i = 0; i < count; ++i) {
+      out.clusters.push_back({.terms = terms[i],
+                              .meanScale = meanScales[i],
+                              .mean = part(means, i * functions, functions),
+                              .components = part(components, term * functions, terms[i] * functions),
+                              .weightScale = part(weightScales, term, terms[i])});
+      term += terms[i];
+    }
+  }
+
+  ClusteredVertices readClusteredVertices(std::size_t primitive, std::size_t count, const std::string& label) const {
+    const auto& c = baked_.transfer.clustered;
+    const json& list = listOf((*extension_)["clustered"], "primitives", "\"clustered\"");
+    if (primitive >= list.size()) fail("\"clustered\" has too few primitives");
+    const json& entry = list[primitive];
+    ClusteredVertices out;
+    out.cluster = elements<std::uint16_t>(viewIndex(entry, "clusters", label), count, "the list of clusters of " + label);
+    for (const auto cluster : out.cluster)
+      if (cluster >= c.clusters.size()) fail(label + " names cluster " + std::to_string(cluster) + " of " + std::to_string(c.clusters.size()));
+    const auto weights = out.firstWeights(c.clusters).back();
+    if (weights == 0) return out;
+    const std::string what = "the list of weights of " + label;
+    if (c.weightBits == 16) {
+      out.weights = elements<std::int16_t>(viewIndex(entry, "weights", label), weights, what);
+    } else {
+      const auto bytes = elements<std::int8_t>(viewIndex(entry, "weights", label), weights, what);
+      out.weights.assign(bytes.begin(), bytes.end());
+    }
+    return out;
+  }
+
   void readFacts() {
     const json& facts = member(*extension_, "facts", kTransferExtension);
     if (!facts.is_object()) fail("\"facts\" is not an object");
@@ -253,21 +363,22 @@ class BakedReader {
         const std::size_t count = baked_.scene.primitives[index].positions.size();
         const json& attributes = member(primitive, "attributes", label);
         if (!attributes.is_object() || !attributes.contains("NORMAL")) fail(label + " has no normals");
-        baked_.transfer.primitives.push_back(readPrimitive(attributes, count, label));
+        baked_.transfer.primitives.push_back(readPrimitive(attributes, index, count, label));
         ++index;
       }
     }
     if (index != baked_.scene.primitives.size()) fail("its nodes do not show its meshes in order");
   }
 
-  PrimitiveTransfer readPrimitive(const json& attributes, std::size_t count, const std::string& label) const {
+  PrimitiveTransfer readPrimitive(const json& attributes, std::size_t index, std::size_t count, const std::string& label) const {
     const Transfer& t = baked_.transfer;
     PrimitiveTransfer out;
+    if (!t.clustered.empty()) out.clustered = readClusteredVertices(index, count, label);
     readColumns(attributes, "_SSDF_", kShort, static_cast<std::size_t>(t.paddedTerms()), count, label, out.weights);
-    readColumns(attributes, "_VISIBILITY_", kUnsignedByte, static_cast<std::size_t>(t.directionCount), count, label,
+    if (!t.fractionsInRow()) readColumns(attributes, "_VISIBILITY_", kUnsignedByte, static_cast<std::size_t>(t.directionCount), count, label,
                 out.visibility);
     const auto padded = static_cast<std::size_t>(t.paddedTerms());
-    for (std::size_t v = 0; v < count; ++v)
+    for (std::size_t v = 0; padded > 0 && v < count; ++v)
       for (std::size_t k = static_cast<std::size_t>(t.terms); k < padded; ++k)
         if (out.weights[v * padded + k] != 0) fail(label + " has weights that are not 0 behind the last term");
     return out;

@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "assets/scene/scene.h"
+#include "assets/transfer/clustered.h"
 
 namespace chiaro {
 
@@ -26,24 +27,34 @@ inline constexpr std::uint32_t kTransferVersion = 1;
 
 /// Per-vertex part, parallel to Scene::primitives.
 struct PrimitiveTransfer {
-  /// #vertices by `Transfer::paddedTerms`, row-major: weight k = weightScale[k] * value / 32767. Padding is 0.
+  /// Global form: #vertices by `Transfer::paddedTerms`, row-major: weight k = weightScale[k] * value / 32767. Padding is 0.
   std::vector<std::int16_t> weights;
+  /// Clustered form; then `weights` is empty.
+  ClusteredVertices clustered;
   /// #vertices by `Transfer::directionCount`, row-major: visible fraction = value / 255.
   std::vector<std::uint8_t> visibility;
 };
 
 struct Transfer {
   int resolution = 0;  ///< octahedral texels a side (lobe/octahedral.glsl), row-major, texel centres at (i + 1/2) / resolution
-  int terms = 0;       ///< PCA terms K >= 0 (0: nothing in the scene is occluded)
+  int terms = 0;       ///< PCA terms K >= 0 (0: nothing in the scene is occluded); clustered: the most that any cluster has
   int directionCount = 0;  ///< a multiple of 4
   float directionSharpness = 0.0f;
   std::vector<glm::vec3> directions;  ///< `directionCount` unit axes, world space
-  std::vector<float> mean;            ///< resolution^2, radians
-  std::vector<float> eigenfunctions;  ///< terms by resolution^2, row-major; stored as half
-  std::vector<float> weightScale;     ///< terms; > 0
+  std::vector<float> mean;            ///< `columns()`; the SSDF's in radians
+  std::vector<float> eigenfunctions;  ///< global form: terms by resolution^2, row-major; stored as half
+  std::vector<float> weightScale;     ///< global form: terms; > 0
+  ClusteredTransfer clustered;        ///< empty in the global form
   std::vector<PrimitiveTransfer> primitives;
 
-  int paddedTerms() const { return (terms + 3) / 4 * 4; }
+  int paddedTerms() const { return clustered.empty() ? (terms + 3) / 4 * 4 : 0; }
+  std::size_t texels() const { return static_cast<std::size_t>(resolution) * static_cast<std::size_t>(resolution); }
+  /// Values of the levels' maps.
+  std::size_t levelTexels() const;
+  /// Whether the visible fractions are part of a row (and only derived from it in memory), or each vertex' own bytes.
+  bool fractionsInRow() const { return !clustered.levels.empty(); }
+  /// Values of a row: the SSDF, the levels, and, with levels, the visible fractions.
+  std::size_t columns() const;
   /// Weights, visibility, and the shared mean, eigenfunctions and scales as stored, over all vertices.
   double bytesPerVertex(std::size_t vertexCount) const;
 };

@@ -14,6 +14,9 @@ inline constexpr const char* kTransferParameterization = "octahedral";
 inline constexpr int kMostTransferResolution = 4096;
 inline constexpr int kMostTransferTerms = 4096;
 inline constexpr int kMostTransferDirections = 4096;
+inline constexpr std::size_t kMostTransferClusters = 65535;
+inline constexpr std::size_t kMostTransferFunctions = 4096;
+inline constexpr std::size_t kMostTransferLevels = 16;
 
 /// XXH64 with seed 0, as 16 lower-case hexadecimal digits.
 std::string checksumOf(std::span<const std::uint8_t> bytes);

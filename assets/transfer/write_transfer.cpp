@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "assets/error.h"
 #include "assets/file.h"
@@ -51,6 +52,11 @@ class FitCheck {
     require(t.directionCount >= 0 && t.directionCount <= kMostTransferDirections && t.directionCount % 4 == 0,
             "the number of directions is out of range or not a multiple of 4");
     require(t.directions.size() == static_cast<std::size_t>(t.directionCount), "the directions are not as many as they say");
+    if (!t.clustered.empty()) {
+      checkClustered();
+      return;
+    }
+    require(t.clustered.levels.empty(), "there are levels without clusters");
     require(t.mean.size() == texels || (t.mean.empty() && t.terms == 0), "the mean has the wrong size");
     require(t.eigenfunctions.size() == texels * static_cast<std::size_t>(t.terms), "the eigenfunctions have the wrong size");
     require(t.weightScale.size() == static_cast<std::size_t>(t.terms), "the weight scales have the wrong size");
@@ -60,6 +66,46 @@ class FitCheck {
     for (const float v : t.mean) require(std::isfinite(v), "the mean is not finite");
     for (const float v : t.eigenfunctions) require(std::abs(v) <= 65504.0f, "an eigenfunction is not finite as a half");
     for (const float v : t.weightScale) require(v > 0.0f && std::isfinite(v), "a weight scale is not positive and finite");
+  }
+
+  void checkClustered() const {
+    const auto& t = transfer_;
+    const auto& c = t.clustered;
+    require(t.resolution > 0, "there are clusters without a resolution");
+    for (const auto& level : c.levels)
+      require(level.resolution > 0 && level.resolution <= kMostTransferResolution && std::isfinite(level.sharpness) && level.sharpness > 0.0f,
+              "a level is out of range");
+    for (std::size_t l = 1; l < c.levels.size(); ++l) require(c.levels[l].sharpness > c.levels[l - 1].sharpness, "the levels do not get sharper");
+    require(t.mean.size() == t.columns(), "the mean has the wrong size");
+    for (const float v : t.mean) require(std::isfinite(v), "the mean is not finite");
+    require(t.eigenfunctions.empty() && t.weightScale.empty(), "there are global components beside clusters");
+    require(c.weightBits == 8 || c.weightBits == 16, "weights are neither 8 nor 16 bits");
+    require(c.clusters.size() <= kMostTransferClusters && c.functions.count() <= kMostTransferFunctions, "there are too many clusters or functions");
+    std::size_t bytes = 0;
+    require(c.functions.scale.size() == c.functions.count(), "the function scales have the wrong size");
+    for (std::size_t f = 0; f < c.functions.count(); ++f) {
+      require(c.functions.bits[f] == 16 || c.functions.bits[f] == 8 || c.functions.bits[f] == 4, "a function has an unknown number of bits");
+      require(std::isfinite(c.functions.scale[f]) && c.functions.scale[f] > 0.0f, "a function scale is not positive and finite");
+      bytes += PackedFunctions::bytesOf(c.functions.bits[f], t.columns());
+    }
+    require(c.functions.data.size() == bytes, "the functions have the wrong size");
+    for (const auto& cluster : c.clusters) {
+      require(cluster.terms >= 0 && cluster.terms <= t.terms, "a cluster has too many terms");
+      require(cluster.mean.size() == c.functions.count() && cluster.components.size() == c.functions.count() * static_cast<std::size_t>(cluster.terms) &&
+                  cluster.weightScale.size() == static_cast<std::size_t>(cluster.terms),
+              "a cluster has the wrong size");
+      require(std::isfinite(cluster.meanScale) && cluster.meanScale >= 0.0f, "a cluster's mean is not finite");
+      for (const float v : cluster.weightScale) require(v > 0.0f && std::isfinite(v), "a weight scale is not positive and finite");
+    }
+  }
+
+  void checkClusteredVertices(const ClusteredVertices& v, std::size_t count, const std::string& label) const {
+    const auto& c = transfer_.clustered;
+    require(v.cluster.size() == count, label + " does not have one cluster a vertex");
+    for (const auto cluster : v.cluster) require(cluster < c.clusters.size(), label + " names a cluster that does not exist");
+    require(v.weights.size() == v.firstWeights(c.clusters).back(), label + " has the wrong number of weights");
+    const int most = c.weightBits == 8 ? 127 : 32767;
+    for (const auto w : v.weights) require(w >= -most && w <= most, label + " has a weight out of range");
   }
 
   void checkPrimitive(std::size_t index) const {
@@ -85,10 +131,11 @@ class FitCheck {
     for (const auto& v : p.texcoords)
       require(std::isfinite(v.x) && std::isfinite(v.y), label + " has a texture coordinate that is not finite");
     const auto padded = static_cast<std::size_t>(transfer_.paddedTerms());
+    if (!transfer_.clustered.empty()) checkClusteredVertices(t.clustered, count, label);
     require(t.weights.size() == count * padded, label + " has the wrong number of weights");
     require(t.visibility.size() == count * static_cast<std::size_t>(transfer_.directionCount),
             label + " has the wrong number of visible fractions");
-    for (std::size_t v = 0; v < count; ++v)
+    for (std::size_t v = 0; padded > 0 && v < count; ++v)
       for (std::size_t k = static_cast<std::size_t>(transfer_.terms); k < padded; ++k)
         require(t.weights[v * padded + k] == 0, label + " has weights that are not 0 behind the last term");
   }
@@ -102,10 +149,11 @@ class FitCheck {
 std::uint64_t upperBound(const BakedScene& baked) {
   const auto& t = baked.transfer;
   std::uint64_t size = std::uint64_t{1} << 20;
-  const auto perVertex = static_cast<std::uint64_t>(2 * t.paddedTerms() + t.directionCount + 48);
+  const auto perVertex = static_cast<std::uint64_t>(2 * std::max(t.paddedTerms(), t.terms) + t.directionCount + 50);
   for (const auto& p : baked.scene.primitives) size += p.positions.size() * perVertex + p.indices.size() * 4 + 4096;
   for (const auto& image : baked.scene.images) size += image.bytes.size() + 1024;
-  return size + t.mean.size() * 4 + t.eigenfunctions.size() * 2;
+  for (const auto& c : t.clustered.clusters) size += 2 * c.mean.size() + c.components.size() + 8 * c.weightScale.size();
+  return size + t.clustered.functions.data.size() + t.mean.size() * 4 + t.eigenfunctions.size() * 2;
 }
 
 /// Columns 4g..4g+3 of a row-major matrix.
@@ -132,10 +180,60 @@ void addVertexTransfer(const Transfer& transfer, const PrimitiveTransfer& values
     }
   };
   add("_SSDF_", values.weights, static_cast<std::size_t>(transfer.paddedTerms()), kShort);
-  add("_VISIBILITY_", values.visibility, static_cast<std::size_t>(transfer.directionCount), kUnsignedByte);
+  if (!transfer.fractionsInRow()) add("_VISIBILITY_", values.visibility, static_cast<std::size_t>(transfer.directionCount), kUnsignedByte);
 }
 
-Json extensionOf(const BakedScene& baked, GltfWriter& writer) {
+/// Weights as they are stored: `bits` each.
+int addWeights(const std::vector<std::int16_t>& weights, int bits, const std::string& name, GltfWriter& writer) {
+  if (bits == 16) return writer.addArray(weights, name);
+  return writer.addArray(std::vector<std::int8_t>(weights.begin(), weights.end()), name);
+}
+
+Json clusteredOf(const BakedScene& baked, const std::vector<std::size_t>& order, GltfWriter& writer) {
+  const auto& c = baked.transfer.clustered;
+  Json out = Json::object();
+  out["levels"] = Json::array();
+  for (const auto& level : c.levels) out["levels"].push_back({{"sharpness", level.sharpness}, {"resolution", level.resolution}});
+  out["functionCount"] = c.functions.count();
+  if (c.functions.count() > 0) {
+    out["functionBits"] = writer.addArray(c.functions.bits, "function bits");
+    out["functionScales"] = writer.addArray(c.functions.scale, "function scales");
+    out["functions"] = writer.addArray(c.functions.data, "functions");
+  }
+  std::vector<std::uint16_t> terms;
+  std::vector<float> meanScales, weightScales;
+  std::vector<std::int16_t> means;
+  std::vector<std::int8_t> components;
+  for (const auto& cluster : c.clusters) {
+    terms.push_back(static_cast<std::uint16_t>(cluster.terms));
+    meanScales.push_back(cluster.meanScale);
+    means.insert(means.end(), cluster.mean.begin(), cluster.mean.end());
+    components.insert(components.end(), cluster.components.begin(), cluster.components.end());
+    weightScales.insert(weightScales.end(), cluster.weightScale.begin(), cluster.weightScale.end());
+  }
+  out["clusterCount"] = c.clusters.size();
+  out["clusterTerms"] = writer.addArray(terms, "cluster terms");
+  if (!means.empty()) {
+    out["clusterMeanScales"] = writer.addArray(meanScales, "cluster mean scales");
+    out["clusterMeans"] = writer.addArray(means, "cluster means");
+  }
+  if (!weightScales.empty()) {
+    out["weightScales"] = writer.addArray(weightScales, "weight scales");
+    out["components"] = writer.addArray(components, "components");
+  }
+  out["weightBits"] = c.weightBits;
+  out["primitives"] = Json::array();
+  for (const auto p : order) {
+    const auto& vertices = baked.transfer.primitives[p].clustered;
+    const std::string of = " of primitive " + std::to_string(out["primitives"].size());
+    Json primitive = {{"clusters", writer.addArray(vertices.cluster, "clusters" + of)}};
+    if (!vertices.weights.empty()) primitive["weights"] = addWeights(vertices.weights, c.weightBits, "weights" + of, writer);
+    out["primitives"].push_back(primitive);
+  }
+  return out;
+}
+
+Json extensionOf(const BakedScene& baked, const std::vector<std::size_t>& order, GltfWriter& writer) {
   const Transfer& transfer = baked.transfer;
   Json out = Json::object();
   out["version"] = kTransferVersion;
@@ -146,7 +244,9 @@ Json extensionOf(const BakedScene& baked, GltfWriter& writer) {
   out["directionSharpness"] = transfer.directionSharpness;
   if (!transfer.directions.empty()) out["directions"] = writer.addArray(transfer.directions, "directions");
   if (!transfer.mean.empty()) out["mean"] = writer.addArray(transfer.mean, "mean");
-  if (transfer.terms > 0) {
+  if (!transfer.clustered.empty()) {
+    out["clustered"] = clusteredOf(baked, order, writer);
+  } else if (transfer.terms > 0) {
     std::vector<std::uint16_t> halves;
     halves.reserve(transfer.eigenfunctions.size());
     for (const float value : transfer.eigenfunctions) halves.push_back(Imath::half(value).bits());
@@ -187,7 +287,7 @@ void writeBakedScene(const std::filesystem::path& path, const BakedScene& baked,
   for (std::size_t i = 0; i < order.size(); ++i)
     addVertexTransfer(baked.transfer, baked.transfer.primitives[order[i]], baked.scene.primitives[order[i]].positions.size(),
                       places[i], writer);
-  writer.json["extensions"][kTransferExtension] = extensionOf(baked, writer);
+  writer.json["extensions"][kTransferExtension] = extensionOf(baked, order, writer);
   writer.json["buffers"] = Json::array({{{"byteLength", aligned4(writer.binary().size())}}});
   writeFileAtomically(path, GltfWriter::container(signedJson(writer.json), writer.binary()));
 }

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
+#include <map>
 #include <numbers>
 #include <string_view>
 
@@ -51,6 +52,13 @@ void declare(CLI::App& app, Options& options) {
   app.add_option("-o,--output", options.output, "Baked scene to write (.glb)")->required()->type_name("FILE");
   app.add_option("--json", options.json, "Also write sizes, seconds, errors and repairs here")->type_name("FILE");
 
+  const std::map<std::string, Compression> forms{{"pca", Compression::pca}, {"clustered", Compression::clustered}, {"joint", Compression::joint}};
+  app.add_option("--compression", settings.compression, "pca (global), clustered, or joint (clustered, with prefiltered visibility)")
+      ->transform(CLI::CheckedTransformer(forms, CLI::ignore_case))->option_text("pca|clustered|joint");
+  shown(app.add_option("--clusters", settings.clusters, "Clusters, 0 is by the number of vertices"), "N");
+  shown(app.add_option("--functions", settings.functions, "Functions that clusters share, 0 is by the number of vertices"), "N");
+  shown(app.add_option("--weight-bits", settings.weightBits, "Bits of a weight, 8 or 16"), "N");
+  shown(app.add_option("--function-bits", settings.functionBits, "Bits of a function's values: 16, 8, 4, or 0 for 8 and 4 by what each is worth"), "N");
   shown(app.add_option("--resolution", settings.resolution, "Texels a side of the octahedral sphere, 16 to 256, a multiple of 4"), "N");
   shown(app.add_option("--terms", settings.terms, "Principal components kept, 1 to 256"), "K");
   shown(app.add_option("--directions", settings.directionCount, "Broad lobes a vertex, 8 to 64, a multiple of 4"), "N");

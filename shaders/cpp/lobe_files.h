@@ -3,6 +3,7 @@
 #include "shaders/lobe/sg.glsl"
 #include "shaders/lobe/half_space.glsl"
 #include "shaders/lobe/ssdf.glsl"
+#include "shaders/lobe/prefiltered.glsl"
 #include "shaders/lobe/cosine.glsl"
 #include "shaders/lobe/warp.glsl"
 #include "shaders/lobe/octahedral.glsl"

@@ -1,0 +1,113 @@
+#include "assets/transfer/clustered.h"
+
+#include <Imath/half.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace chiaro {
+namespace {
+
+constexpr std::size_t kBlock = 16;
+
+float largest(const float* values, std::size_t count) {
+  float most = 0.0f;
+  for (std::size_t i = 0; i < count; ++i) most = std::max(most, std::abs(values[i]));
+  return most;
+}
+
+std::size_t blocks(std::size_t columns) { return (columns + kBlock - 1) / kBlock; }
+
+int nibble(int bits) { return bits >= 8 ? bits - 16 : bits; }
+
+}  // namespace
+
+std::size_t PackedFunctions::bytesOf(int bits, std::size_t columns) {
+  if (bits == 16) return 2 * columns;
+  return bits == 8 ? columns : blocks(columns) * (1 + kBlock / 2);
+}
+
+void PackedFunctions::append(const float* values, std::size_t columns, int bitsPerValue) {
+  bits.push_back(static_cast<std::uint8_t>(bitsPerValue));
+  const auto first = data.size();
+  data.resize(first + bytesOf(bitsPerValue, columns));
+  auto* to = data.data() + first;
+  if (bitsPerValue == 16) {
+    scale.push_back(1.0f);
+    for (std::size_t i = 0; i < columns; ++i) {
+      const auto half = Imath::half(values[i]).bits();
+      std::memcpy(to + 2 * i, &half, 2);
+    }
+    return;
+  }
+  const float most = std::max(largest(values, columns), 1e-30f);
+  scale.push_back(most);
+  if (bitsPerValue == 8) {
+    for (std::size_t i = 0; i < columns; ++i) to[i] = static_cast<std::uint8_t>(static_cast<std::int8_t>(std::lrint(values[i] / most * 127.0f)));
+    return;
+  }
+  for (std::size_t b = 0; b < blocks(columns); ++b, to += 1 + kBlock / 2) {
+    const auto begin = b * kBlock, count = std::min(kBlock, columns - begin);
+    // Rounded up, so that no value leaves the range.
+    const auto share = static_cast<std::uint8_t>(std::clamp(std::ceil(largest(values + begin, count) / most * 255.0f), 0.0f, 255.0f));
+    to[0] = share;
+    const float unit = most * static_cast<float>(share) / (255.0f * 7.0f);
+    for (std::size_t i = 0; i < count; ++i) {
+      const long q = share == 0 ? 0 : std::clamp(std::lrint(values[begin + i] / unit), -7L, 7L);
+      to[1 + i / 2] = static_cast<std::uint8_t>(to[1 + i / 2] | (static_cast<unsigned>(q) & 15u) << (i % 2 == 0 ? 0 : 4));
+    }
+  }
+}
+
+std::vector<float> PackedFunctions::unpack(std::size_t columns) const {
+  std::vector<float> values(count() * columns);
+  const auto* from = data.data();
+  for (std::size_t f = 0; f < count(); ++f) {
+    float* to = values.data() + f * columns;
+    if (bits[f] == 16) {
+      for (std::size_t i = 0; i < columns; ++i) {
+        std::uint16_t raw = 0;
+        std::memcpy(&raw, from + 2 * i, 2);
+        Imath::half half;
+        half.setBits(raw);
+        to[i] = half;
+      }
+    } else if (bits[f] == 8) {
+      for (std::size_t i = 0; i < columns; ++i) to[i] = scale[f] * static_cast<float>(static_cast<std::int8_t>(from[i])) / 127.0f;
+    } else {
+      const auto* block = from;
+      for (std::size_t b = 0; b < blocks(columns); ++b, block += 1 + kBlock / 2) {
+        const float unit = scale[f] * static_cast<float>(block[0]) / (255.0f * 7.0f);
+        for (std::size_t i = 0; i < std::min(kBlock, columns - b * kBlock); ++i)
+          to[b * kBlock + i] = unit * static_cast<float>(nibble(block[1 + i / 2] >> (i % 2 == 0 ? 0 : 4) & 15));
+      }
+    }
+    from += bytesOf(bits[f], columns);
+  }
+  return values;
+}
+
+std::vector<std::size_t> ClusteredVertices::firstWeights(const std::vector<TransferCluster>& clusters) const {
+  std::vector<std::size_t> first(cluster.size() + 1, 0);
+  for (std::size_t i = 0; i < cluster.size(); ++i) first[i + 1] = first[i] + static_cast<std::size_t>(clusters[cluster[i]].terms);
+  return first;
+}
+
+std::vector<float> clusterMaps(const TransferCluster& cluster, const std::vector<float>& functions, const std::vector<float>& mean) {
+  const auto columns = mean.size(), count = cluster.mean.size();
+  std::vector<float> maps((1 + static_cast<std::size_t>(cluster.terms)) * columns, 0.0f);
+  std::copy(mean.begin(), mean.end(), maps.begin());
+  const auto add = [&](float* map, std::size_t function, float factor) {
+    if (factor == 0.0f) return;
+    const float* from = functions.data() + function * columns;
+    for (std::size_t i = 0; i < columns; ++i) map[i] += factor * from[i];
+  };
+  for (std::size_t d = 0; d < count; ++d) add(maps.data(), d, cluster.meanScale * static_cast<float>(cluster.mean[d]) / 32767.0f);
+  for (std::size_t k = 0; k < static_cast<std::size_t>(cluster.terms); ++k)
+    for (std::size_t d = 0; d < count; ++d)
+      add(maps.data() + (1 + k) * columns, d, static_cast<float>(cluster.components[k * count + d]) / 127.0f);
+  return maps;
+}
+
+}  // namespace chiaro

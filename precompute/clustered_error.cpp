@@ -1,0 +1,184 @@
+#include "precompute/clustered_error.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <random>
+
+#include "precompute/parallel.h"
+#include "precompute/transfer_lookup.h"
+#include "shaders/cpp/lobe.h"
+
+namespace chiaro {
+namespace {
+
+constexpr std::array kSharpness{3, 10, 30, 100, 300, 1000, 3000};
+constexpr std::size_t kVertices = 256;
+constexpr std::size_t kAxes = 16;
+constexpr std::uint32_t kRays = 512;
+
+double uniform(std::mt19937& random) { return static_cast<double>(random()) * 0x1p-32; }
+
+glm::dvec3 uniformDirection(std::mt19937& random) {
+  const double z = 2.0 * uniform(random) - 1.0, phi = 2.0 * std::numbers::pi * uniform(random), r = std::sqrt(1.0 - z * z);
+  return {r * std::cos(phi), r * std::sin(phi), z};
+}
+
+/// Share of the lobe's rays that leave above the horizon and meet nothing.
+double tracedFraction(const RayScene& rays, glm::vec3 origin, glm::vec3 n, glm::dvec3 axis, double sharpness, double turn) {
+  const auto helper = std::abs(axis.x) < 0.7 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
+  const auto x = glm::normalize(glm::cross(helper, axis)), y = glm::cross(axis, x);
+  std::uint32_t seen = 0;
+  for (std::uint32_t i = 0; i < kRays; ++i) {
+    const double u = (static_cast<double>(i) + 0.5) / kRays;
+    const double t = -std::log1p(u * std::expm1(-2.0 * sharpness)) / sharpness;  // 1 - cos, in strata
+    const double sine = std::sqrt(std::max(t * (2.0 - t), 0.0)), phi = turn + i * 2.39996322972865332;
+    const glm::vec3 w(glm::normalize((1.0 - t) * axis + sine * (std::cos(phi) * x + std::sin(phi) * y)));
+    if (glm::dot(w, n) > 0.0f && !rays.occluded(origin, w, 0.0f, std::numeric_limits<float>::infinity())) ++seen;
+  }
+  return static_cast<double>(seen) / kRays;
+}
+
+/// Maps of clusters, made when first asked for.
+class ClusterMaps {
+ public:
+  explicit ClusterMaps(const Transfer& transfer) : transfer_(transfer), functions_(transfer.clustered.functions.unpack(transfer.columns())) {}
+  const std::vector<float>& operator[](std::uint16_t cluster) {
+    auto& maps = maps_[cluster];
+    if (maps.empty()) maps = clusterMaps(transfer_.clustered.clusters[cluster], functions_, transfer_.mean);
+    return maps;
+  }
+
+ private:
+  const Transfer& transfer_;
+  std::vector<float> functions_;
+  std::map<std::uint16_t, std::vector<float>> maps_;
+};
+
+struct Sums {
+  double squared = 0.0, wrongSign = 0.0, solidAngle = 0.0;
+  std::vector<double> levelSquared, levelCount;
+  std::array<double, kSharpness.size()> stored{}, uncompressed{};
+};
+
+}  // namespace
+
+std::vector<std::pair<std::string, double>> measureClusteredError(const RayScene& rays, const std::vector<Viewpoint>& viewpoints,
+                                                                  const TransferRows& rows, const Transfer& transfer,
+                                                                  const BakeSettings& settings, const std::function<void(double)>& progress) {
+  std::mt19937 random(settings.seed + 1);
+  const auto count = std::min(kVertices, viewpoints.size());
+  std::vector<std::uint32_t> vertices;
+  for (std::size_t i = 0; i < count; ++i)
+    vertices.push_back(static_cast<std::uint32_t>(uniform(random) * static_cast<double>(viewpoints.size())));
+
+  ClusterMaps maps(transfer);
+  const auto columns = transfer.columns();
+  std::vector<float> stored(count * columns);
+  {
+    std::vector<std::pair<std::size_t, std::size_t>> place;  // of each vertex: primitive and index
+    std::vector<std::vector<std::size_t>> first;
+    for (const auto& p : transfer.primitives) first.push_back(p.clustered.firstWeights(transfer.clustered.clusters));
+    for (std::size_t i = 0; i < count; ++i) {
+      std::size_t p = 0, v = vertices[i];
+      while (v >= transfer.primitives[p].clustered.cluster.size()) v -= transfer.primitives[p++].clustered.cluster.size();
+      const auto& own = transfer.primitives[p].clustered;
+      const auto& map = maps[own.cluster[v]];
+      const auto& scale = transfer.clustered.clusters[own.cluster[v]].weightScale;
+      float* row = stored.data() + i * columns;
+      std::copy_n(map.data(), columns, row);
+      for (std::size_t k = 0; k < scale.size(); ++k) {
+        const float w = scale[k] * static_cast<float>(own.weights[first[p][v] + k]);
+        for (std::size_t j = 0; j < columns; ++j) row[j] += w * map[(1 + k) * columns + j];
+      }
+    }
+  }
+  std::vector<float> exact(count * rows.size());
+  constexpr std::size_t kBlock = 16;
+  const auto& levels = rows.layout().levels;
+  std::vector<Sums> parts(count);
+  StepCounter steps(count, progress);
+  parallelBlocks(settings.threads, (count + kBlock - 1) / kBlock, [&](std::size_t block) {
+    const auto begin = block * kBlock, n = std::min(kBlock, count - begin);
+    rows(std::span<const std::uint32_t>(vertices).subspan(begin, n), exact.data() + begin * rows.size(), rows.size());
+    for (std::size_t i = begin; i < begin + n; ++i) {
+      auto& sum = parts[i];
+      const auto& viewpoint = viewpoints[vertices[i]];
+      const float *got = stored.data() + i * columns, *want = exact.data() + i * rows.size();
+      const auto isAbove = [&](glm::vec3 w) { return viewpoint.doubleSided || glm::dot(w, viewpoint.normal) > 0.0f; };
+      const auto& grid = rows.storedGrid();
+      for (std::size_t t = 0; t < grid.texelCount; ++t) {
+        if (!isAbove(grid.direction(t))) continue;
+        const double error = static_cast<double>(got[grid.rowMajor[t]] - want[grid.rowMajor[t]]), w = static_cast<double>(grid.solidAngle[t]);
+        sum.squared += w * error * error;
+        sum.wrongSign += (got[grid.rowMajor[t]] < 0.0f) != (want[grid.rowMajor[t]] < 0.0f) ? w : 0.0;
+        sum.solidAngle += w;
+      }
+      std::size_t at = grid.texelCount;
+      for (const auto& level : levels) {
+        double squared = 0.0, all = 0.0;
+        for (int t = 0; t < level.resolution * level.resolution; ++t, ++at) {
+          if (!isAbove(lobe32::octahedralTexelDirection({t % level.resolution, t / level.resolution}, level.resolution))) continue;
+          const double error = static_cast<double>(got[at] - want[at]);
+          squared += error * error;
+          all += 1.0;
+        }
+        sum.levelSquared.push_back(squared);
+        sum.levelCount.push_back(all);
+      }
+      std::mt19937 own(settings.seed ^ vertices[i]);
+      for (std::size_t a = 0; a < kAxes; ++a) {
+        auto axis = uniformDirection(own);
+        bool front = glm::dot(axis, glm::dvec3(viewpoint.normal)) >= 0.0;
+        if (!front && !viewpoint.doubleSided) {
+          axis = -axis;
+          front = true;
+        }
+        const double turn = 2.0 * std::numbers::pi * uniform(own);
+        const auto n3 = front ? viewpoint.normal : -viewpoint.normal;
+        for (std::size_t s = 0; s < kSharpness.size(); ++s) {
+          const double truth = tracedFraction(rays, front ? viewpoint.front : viewpoint.back, n3, axis, kSharpness[s], turn);
+          const double above = lobe64::sgHalfSpaceFraction(glm::dot(axis, glm::dvec3(n3)), static_cast<double>(kSharpness[s]));
+          const auto error = [&](const float* row) {
+            return std::abs(above * visibleShare(row, grid.resolution, levels, glm::vec3(axis), kSharpness[s]) - truth);
+          };
+          sum.stored[s] += error(got);
+          sum.uncompressed[s] += error(want);
+        }
+      }
+      steps.add();
+    }
+  });
+
+  Sums sum;
+  sum.levelSquared.resize(levels.size());
+  sum.levelCount.resize(levels.size());
+  for (const auto& part : parts) {
+    sum.squared += part.squared;
+    sum.wrongSign += part.wrongSign;
+    sum.solidAngle += part.solidAngle;
+    for (std::size_t l = 0; l < levels.size(); ++l) {
+      sum.levelSquared[l] += part.levelSquared[l];
+      sum.levelCount[l] += part.levelCount[l];
+    }
+    for (std::size_t s = 0; s < kSharpness.size(); ++s) {
+      sum.stored[s] += part.stored[s] / static_cast<double>(count * kAxes);
+      sum.uncompressed[s] += part.uncompressed[s] / static_cast<double>(count * kAxes);
+    }
+  }
+  std::vector<std::pair<std::string, double>> result;
+  result.emplace_back("ssdf_rms_radians", std::sqrt(sum.squared / sum.solidAngle));
+  result.emplace_back("ssdf_sign_share", sum.wrongSign / sum.solidAngle);
+  for (std::size_t l = 0; l < levels.size(); ++l)
+    result.emplace_back("level_rms_" + std::to_string(std::lround(levels[l].sharpness)), std::sqrt(sum.levelSquared[l] / sum.levelCount[l]));
+  for (std::size_t s = 0; s < kSharpness.size(); ++s)
+    result.emplace_back("visible_fraction_mean_abs_" + std::to_string(kSharpness[s]), sum.stored[s]);
+  for (std::size_t s = 0; s < kSharpness.size(); ++s)
+    result.emplace_back("visible_fraction_uncompressed_mean_abs_" + std::to_string(kSharpness[s]), sum.uncompressed[s]);
+  return result;
+}
+
+}  // namespace chiaro
