@@ -119,8 +119,6 @@ int automatic(int wanted, std::size_t vertices, std::size_t verticesEach, int le
   return static_cast<int>(std::clamp(vertices / verticesEach, static_cast<std::size_t>(least), static_cast<std::size_t>(most)));
 }
 
-void decodeFractions(const Transfer& transfer, FractionBytes& bytes);
-
 }  // namespace
 
 void bakeClustered(const RayScene& rays, const std::vector<Viewpoint>& viewpoints, const BakeSettings& settings, BakedScene& baked,
@@ -203,42 +201,11 @@ void bakeClustered(const RayScene& rays, const std::vector<Viewpoint>& viewpoint
   encodeClusters(pca, clusters, coordinates, primitiveVertices, {.weightBits = settings.weightBits, .functionBits = settings.functionBits, .threads = settings.threads},
                  transfer);
   report.seconds.compression += secondsSince(compressionStart);
-  if (joint) decodeFractions(transfer, fractionBytes);
+  if (joint) decodeFractions(transfer);
 
   report.terms = transfer.terms;
   report.bytesPerVertex = transfer.bytesPerVertex(count);
   report.error = measureClusteredError(rays, viewpoints, rows, transfer, settings, stage("error"));
 }
-
-namespace {
-
-void decodeFractions(const Transfer& transfer, FractionBytes& bytes) {
-  const auto columns = transfer.columns(), directions = static_cast<std::size_t>(transfer.directionCount), first = columns - directions;
-  const auto functions = transfer.clustered.functions.unpack(columns);
-  // Only the last columns are wanted of every cluster.
-  std::vector<float> tail(transfer.clustered.functions.count() * directions), mean(transfer.mean.end() - static_cast<std::ptrdiff_t>(directions), transfer.mean.end());
-  for (std::size_t f = 0; f < transfer.clustered.functions.count(); ++f)
-    std::copy_n(functions.data() + f * columns + first, directions, tail.data() + f * directions);
-  std::vector<std::vector<float>> maps;
-  for (const auto& cluster : transfer.clustered.clusters) maps.push_back(clusterMaps(cluster, tail, mean));
-  std::size_t vertex = 0;
-  std::vector<float> row(directions);
-  for (const auto& primitive : transfer.primitives) {
-    const auto place = primitive.clustered.firstWeights(transfer.clustered.clusters);
-    for (std::size_t i = 0; i < primitive.clustered.cluster.size(); ++i, ++vertex) {
-      const auto c = primitive.clustered.cluster[i];
-      const auto& scale = transfer.clustered.clusters[c].weightScale;
-      std::copy_n(maps[c].data(), directions, row.data());
-      for (std::size_t k = 0; k < scale.size(); ++k) {
-        const float w = scale[k] * static_cast<float>(primitive.clustered.weights[place[i] + k]);
-        for (std::size_t j = 0; j < directions; ++j) row[j] += w * maps[c][(1 + k) * directions + j];
-      }
-      for (float& f : row) f = std::clamp(f, 0.0f, 1.0f);
-      bytes.set(vertex, row.data());
-    }
-  }
-}
-
-}  // namespace
 
 }  // namespace chiaro

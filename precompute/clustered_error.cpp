@@ -48,7 +48,7 @@ class ClusterMaps {
   explicit ClusterMaps(const Transfer& transfer) : transfer_(transfer), functions_(transfer.clustered.functions.unpack(transfer.columns())) {}
   const std::vector<float>& operator[](std::uint16_t cluster) {
     auto& maps = maps_[cluster];
-    if (maps.empty()) maps = clusterMaps(transfer_.clustered.clusters[cluster], functions_, transfer_.mean);
+    if (maps.empty()) maps = clusterMaps({transfer_.clustered.clusters[cluster]}, functions_, transfer_.mean, 0, transfer_.mean.size());
     return maps;
   }
 

@@ -94,19 +94,39 @@ std::vector<std::size_t> ClusteredVertices::firstWeights(const std::vector<Trans
   return first;
 }
 
-std::vector<float> clusterMaps(const TransferCluster& cluster, const std::vector<float>& functions, const std::vector<float>& mean) {
-  const auto columns = mean.size(), count = cluster.mean.size();
-  std::vector<float> maps((1 + static_cast<std::size_t>(cluster.terms)) * columns, 0.0f);
-  std::copy(mean.begin(), mean.end(), maps.begin());
-  const auto add = [&](float* map, std::size_t function, float factor) {
-    if (factor == 0.0f) return;
-    const float* from = functions.data() + function * columns;
-    for (std::size_t i = 0; i < columns; ++i) map[i] += factor * from[i];
-  };
-  for (std::size_t d = 0; d < count; ++d) add(maps.data(), d, cluster.meanScale * static_cast<float>(cluster.mean[d]) / 32767.0f);
-  for (std::size_t k = 0; k < static_cast<std::size_t>(cluster.terms); ++k)
-    for (std::size_t d = 0; d < count; ++d)
-      add(maps.data() + (1 + k) * columns, d, static_cast<float>(cluster.components[k * count + d]) / 127.0f);
+std::vector<float> clusterMaps(const std::vector<TransferCluster>& clusters, const std::vector<float>& functions, const std::vector<float>& mean,
+                               std::size_t begin, std::size_t end) {
+  const auto columns = mean.size(), width = end - begin;
+  std::size_t rows = 0;
+  for (const auto& cluster : clusters) rows += 1 + static_cast<std::size_t>(cluster.terms);
+  std::vector<float> maps(rows * width, 0.0f);
+  // A strip of all functions at a time stays in the cache while every cluster reads it.
+  constexpr std::size_t kStrip = 128;
+  std::vector<float> factors;
+  for (std::size_t strip = begin; strip < end; strip += kStrip) {
+    const auto n = std::min(kStrip, end - strip);
+    float* map = maps.data() + (strip - begin);
+    for (const auto& cluster : clusters) {
+      const auto count = cluster.mean.size();
+      factors.resize(count);
+      for (int k = -1; k < cluster.terms; ++k, map += width) {
+        if (k < 0) std::copy_n(mean.data() + strip, n, map);
+        for (std::size_t d = 0; d < count; ++d)
+          factors[d] = k < 0 ? cluster.meanScale * static_cast<float>(cluster.mean[d]) / 32767.0f
+                             : static_cast<float>(cluster.components[static_cast<std::size_t>(k) * count + d]) / 127.0f;
+        std::size_t d = 0;
+        for (; d + 4 <= count; d += 4) {
+          const float *a = functions.data() + d * columns + strip, *b = a + columns, *c = b + columns, *e = c + columns;
+          const float fa = factors[d], fb = factors[d + 1], fc = factors[d + 2], fe = factors[d + 3];
+          for (std::size_t i = 0; i < n; ++i) map[i] += (fa * a[i] + fb * b[i]) + (fc * c[i] + fe * e[i]);
+        }
+        for (; d < count; ++d) {
+          const float* a = functions.data() + d * columns + strip;
+          for (std::size_t i = 0; i < n; ++i) map[i] += factors[d] * a[i];
+        }
+      }
+    }
+  }
   return maps;
 }
 

@@ -62,8 +62,9 @@ struct ClusteredVertices {
   std::vector<std::size_t> firstWeights(const std::vector<TransferCluster>& clusters) const;
 };
 
-/// Maps of a cluster ready for use: (1 + terms) by columns, the mean first; weights are multiplied by their weightScale, not by a map's.
-/// functions: unpacked; mean: the shared one.
-std::vector<float> clusterMaps(const TransferCluster& cluster, const std::vector<float>& functions, const std::vector<float>& mean);
+/// Maps of clusters ready for use, for columns [begin, end): (1 + terms) by end - begin for each cluster, one behind the other, the mean
+/// first. A vertex's row is mean + sum_k w_k map_k. functions: unpacked, #functions by mean.size().
+std::vector<float> clusterMaps(const std::vector<TransferCluster>& clusters, const std::vector<float>& functions, const std::vector<float>& mean,
+                               std::size_t begin, std::size_t end);
 
 }  // namespace chiaro

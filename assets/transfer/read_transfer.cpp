@@ -368,6 +368,7 @@ class BakedReader {
       }
     }
     if (index != baked_.scene.primitives.size()) fail("its nodes do not show its meshes in order");
+    decodeFractions(baked_.transfer);
   }
 
   PrimitiveTransfer readPrimitive(const json& attributes, std::size_t index, std::size_t count, const std::string& label) const {

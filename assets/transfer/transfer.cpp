@@ -1,5 +1,8 @@
 #include "assets/transfer/transfer.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace chiaro {
 
 std::size_t Transfer::levelTexels() const {
@@ -23,6 +26,36 @@ double Transfer::bytesPerVertex(std::size_t vertexCount) const {
   for (const auto& p : primitives)
     bytes += size(p.clustered.cluster) + static_cast<double>(p.clustered.weights.size()) * clustered.weightBits / 8.0;
   return bytes / static_cast<double>(vertexCount);
+}
+
+void decodeFractions(Transfer& transfer) {
+  if (!transfer.fractionsInRow()) return;
+  const auto& c = transfer.clustered;
+  const auto columns = transfer.columns(), count = static_cast<std::size_t>(transfer.directionCount);
+  const auto maps = clusterMaps(c.clusters, c.functions.unpack(columns), transfer.mean, columns - count, columns);
+  std::vector<const float*> first;
+  const float* next = maps.data();
+  for (const auto& cluster : c.clusters) {
+    first.push_back(next);
+    next += (1 + static_cast<std::size_t>(cluster.terms)) * count;
+  }
+  std::vector<float> row(count);
+  for (auto& primitive : transfer.primitives) {
+    const auto& own = primitive.clustered;
+    const auto place = own.firstWeights(c.clusters);
+    primitive.visibility.clear();
+    for (std::size_t v = 0; v < own.cluster.size(); ++v) {
+      const float* map = first[own.cluster[v]];
+      const auto& scale = c.clusters[own.cluster[v]].weightScale;
+      std::copy_n(map, count, row.data());
+      for (std::size_t k = 0; k < scale.size(); ++k) {
+        map += count;
+        const float w = scale[k] * static_cast<float>(own.weights[place[v] + k]);
+        for (std::size_t j = 0; j < count; ++j) row[j] += w * map[j];
+      }
+      for (const float f : row) primitive.visibility.push_back(static_cast<std::uint8_t>(std::lrint(255.0f * std::clamp(f, 0.0f, 1.0f))));
+    }
+  }
 }
 
 }  // namespace chiaro

@@ -59,6 +59,9 @@ struct Transfer {
   double bytesPerVertex(std::size_t vertexCount) const;
 };
 
+/// With fractionsInRow(): fills every primitive's visible fractions from its row.
+void decodeFractions(Transfer& transfer);
+
 /// What the bake wrote about itself: settings, seconds, error statistics. Flat dotted names ("settings.terms",
 /// "error.ssdf_rms_radians"), kept in the file for people and reports.
 using TransferFacts = std::map<std::string, double>;

@@ -24,20 +24,6 @@ GLint wrapMode(Wrap wrap) {
   return GL_REPEAT;
 }
 
-/// `values`, resolution^2, with one texel of border that continues across the octahedral seams.
-template <class T, class Read>
-std::vector<T> withBorder(int resolution, const Read& read) {
-  const int side = resolution + 2;
-  std::vector<T> bordered(at(side) * at(side));
-  for (int y = 0; y < side; ++y) {
-    for (int x = 0; x < side; ++x) {
-      const glm::ivec2 texel = lobe32::octahedralWrapTexel(glm::ivec2(x - 1, y - 1), resolution);
-      bordered[at(y) * at(side) + at(x)] = read(at(texel.y) * at(resolution) + at(texel.x));
-    }
-  }
-  return bordered;
-}
-
 void requireStorage(std::size_t bytes, const char* what) {
   GLint64 limit = 0;
   glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &limit);
@@ -48,10 +34,14 @@ void requireStorage(std::size_t bytes, const char* what) {
 
 }  // namespace
 
-GpuScene::GpuScene(const BakedScene& baked) : materials_(baked.scene.materials), bounds_(boundsOf(baked.scene)) {
+GpuScene::GpuScene(const BakedScene& baked)
+    : materials_(baked.scene.materials),
+      bounds_(boundsOf(baked.scene)),
+      transfer_(baked),
+      directionSharpness_(baked.transfer.directionSharpness),
+      directions_(baked.transfer.directions) {
   materials_.emplace_back();
   uploadGeometry(baked.scene);
-  uploadTransfer(baked);
   uploadTextures(baked.scene);
   materialBuffer_ = gl::Buffer(materials_.size() * sizeof(MaterialBlock));
   bytes_ += materialBuffer_.size();
@@ -86,70 +76,6 @@ void GpuScene::uploadGeometry(const Scene& scene) {
   vertices_ = gl::Buffer(vertices);
   indices_ = gl::Buffer(indices);
   bytes_ += vertices_.size() + indices_.size();
-}
-
-void GpuScene::uploadTransfer(const BakedScene& baked) {
-  const Transfer& transfer = baked.transfer;
-  resolution_ = transfer.resolution;
-  termVectors_ = transfer.paddedTerms() / 4;
-  directionVectors_ = transfer.directionCount / 4;
-  directionSharpness_ = transfer.directionSharpness;
-  directions_ = transfer.directions;
-  if (transfer.directionCount < 4 || transfer.directionCount > kMaxDirections)
-    throw inputError("scene", std::to_string(transfer.directionCount) + " fixed directions, the renderer takes 4 to 64", "bake it again");
-
-  std::vector<std::uint8_t> visibility;
-  std::vector<std::int16_t> weights;
-  for (const auto& primitive : transfer.primitives) {
-    visibility.insert(visibility.end(), primitive.visibility.begin(), primitive.visibility.end());
-    weights.insert(weights.end(), primitive.weights.begin(), primitive.weights.end());
-  }
-  requireStorage(visibility.size(), "visible fractions");
-  visibility_ = gl::Buffer(visibility);
-  bytes_ += visibility_.size();
-  if (termVectors_ == 0) return;
-
-  requireStorage(weights.size() * sizeof(std::int16_t), "PCA weights");
-  weights_ = gl::Buffer(weights);
-  const int side = resolution_ + 2;
-  const std::size_t texels = at(resolution_) * at(resolution_);
-  mean_ = withBorder<float>(resolution_, [&](std::size_t texel) { return transfer.mean[texel]; });
-  for (int layer = 0; layer < termVectors_; ++layer) {
-    const auto bordered = withBorder<glm::vec4>(resolution_, [&](std::size_t texel) {
-      glm::vec4 value(0.0f);
-      for (int i = 0; i < 4; ++i) {
-        const int term = 4 * layer + i;
-        if (term < transfer.terms) value[i] = transfer.eigenfunctions[at(term) * texels + texel] * transfer.weightScale[at(term)];
-      }
-      return value;
-    });
-    eigen_.insert(eigen_.end(), bordered.begin(), bordered.end());
-  }
-  meanTexture_ = gl::Texture::make2d(GL_R32F, side, side);
-  meanTexture_.upload(0, GL_RED, GL_FLOAT, mean_.data());
-  // Half floats: the eigenfunctions are stored as such, and the scale only moves the exponent range.
-  eigenTexture_ = gl::Texture::make2dArray(GL_RGBA16F, side, side, termVectors_);
-  eigenTexture_.upload(0, GL_RGBA, GL_FLOAT, eigen_.data());
-  bytes_ += weights_.size() + at(side) * at(side) * (4 + 8 * at(termVectors_));
-}
-
-std::vector<float> GpuScene::eigenAt(glm::vec3 direction) const {
-  std::vector<float> values(1 + 4 * at(termVectors_), 0.0f);
-  if (termVectors_ == 0) return values;
-  const int side = resolution_ + 2;
-  const glm::vec2 p = lobe32::octahedralEncode(direction) * static_cast<float>(resolution_) + 0.5f;
-  const glm::ivec2 cell = glm::clamp(glm::ivec2(glm::floor(p)), glm::ivec2(0), glm::ivec2(side - 2));
-  const glm::vec2 f = p - glm::vec2(cell);
-  const std::array<float, 4> share{(1 - f.x) * (1 - f.y), f.x * (1 - f.y), (1 - f.x) * f.y, f.x * f.y};
-  for (int corner = 0; corner < 4; ++corner) {
-    const std::size_t texel = at(cell.y + corner / 2) * at(side) + at(cell.x + corner % 2);
-    values[0] += share[at(corner)] * mean_[texel];
-    for (int layer = 0; layer < termVectors_; ++layer) {
-      const glm::vec4 value = eigen_[at(layer) * at(side) * at(side) + texel];
-      for (int i = 0; i < 4; ++i) values[at(1 + 4 * layer + i)] += share[at(corner)] * value[i];
-    }
-  }
-  return values;
 }
 
 void GpuScene::uploadTextures(const Scene& scene) {
@@ -217,8 +143,7 @@ void GpuScene::bindBuffers() const {
   vertices_.bindBase(GL_SHADER_STORAGE_BUFFER, 0);
   indices_.bindBase(GL_SHADER_STORAGE_BUFFER, 1);
   materialBuffer_.bindBase(GL_SHADER_STORAGE_BUFFER, 2);
-  if (weights_) weights_.bindBase(GL_SHADER_STORAGE_BUFFER, 3);
-  visibility_.bindBase(GL_SHADER_STORAGE_BUFFER, 4);
+  transfer_.bind();
 }
 
 void GpuScene::bindTextures(int material) const {
@@ -226,12 +151,6 @@ void GpuScene::bindTextures(int material) const {
     const int texture = materialTextures_[at(material)][at(unit)];
     (texture == kNone ? white_ : textures_[at(texture)]).bind(static_cast<GLuint>(unit));
   }
-}
-
-void GpuScene::bindTransferTextures() const {
-  if (termVectors_ == 0) return;
-  eigenTexture_.bind(7);
-  meanTexture_.bind(8);
 }
 
 }  // namespace chiaro

@@ -8,6 +8,7 @@
 #include "assets/transfer/transfer.h"
 #include "runtime/gl/buffer.h"
 #include "runtime/gl/texture.h"
+#include "runtime/render/gpu_transfer.h"
 
 namespace chiaro {
 
@@ -31,21 +32,14 @@ class GpuScene {
 
   const std::vector<GpuDraw>& draws() const { return draws_; }
   const Material& material(int index) const { return materials_[static_cast<std::size_t>(index)]; }
-  int termVectors() const { return termVectors_; }
-  int directionVectors() const { return directionVectors_; }
+  const GpuTransfer& transfer() const { return transfer_; }
   float directionSharpness() const { return directionSharpness_; }
   const std::vector<glm::vec3>& directions() const { return directions_; }
   const Bounds& bounds() const { return bounds_; }
-  std::size_t bytes() const { return bytes_; }
-
-  /// Mean and weight-scaled eigenfunctions at a world direction, as the shader's bilinear lookup reads them: the mean, then
-  /// 4 * termVectors() values.
-  std::vector<float> eigenAt(glm::vec3 direction) const;
-  void bindTransferTextures() const;
+  std::size_t bytes() const { return bytes_ + transfer_.bytes(); }
 
  private:
   void uploadGeometry(const Scene& scene);
-  void uploadTransfer(const BakedScene& baked);
   void uploadTextures(const Scene& scene);
   void writeMaterials();
 
@@ -53,13 +47,11 @@ class GpuScene {
   std::vector<Material> materials_;  // the scene's, then the default
   std::vector<Light> lights_;
   Bounds bounds_;
-  int resolution_ = 0, termVectors_ = 0, directionVectors_ = 0;
+  GpuTransfer transfer_;
   float directionSharpness_ = 0.0f;
   std::vector<glm::vec3> directions_;
-  std::vector<float> mean_;            // bordered, (resolution + 2)^2
-  std::vector<glm::vec4> eigen_;       // bordered, termVectors layers
-  gl::Buffer vertices_, indices_, materialBuffer_, weights_, visibility_;
-  gl::Texture eigenTexture_, meanTexture_, white_;
+  gl::Buffer vertices_, indices_, materialBuffer_;
+  gl::Texture white_;
   std::vector<gl::Texture> textures_;
   std::vector<std::array<int, 5>> materialTextures_;  // into textures_, or kNone
   std::size_t bytes_ = 0;

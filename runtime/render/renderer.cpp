@@ -71,7 +71,9 @@ struct Renderer::Impl {
   gl::Texture specularTable, albedoTable;
   gl::VertexArray noAttributes = gl::VertexArray::create();
   gl::Buffer frameBuffer{sizeof(FrameBlock)};
-  gl::Buffer lightEigen;
+  gl::Program lightProgram;
+  gl::Buffer lightVisibility;
+  std::vector<glm::vec4> knownLights;  // axes and sharpness that lightVisibility holds
   std::unique_ptr<Target> shaded, resolved, displayed;
   std::vector<gl::TimerQuery> timers;
   gl::TimerQuery totalTimer = gl::TimerQuery::create();
@@ -80,15 +82,14 @@ struct Renderer::Impl {
 
   explicit Impl(const BakedScene& baked) : scene(baked), lights(baked.scene.lights) {
     if (lights.size() > kMaxPunctualLights) lights.resize(kMaxPunctualLights);
-    const std::vector<std::string> defines{"TERM_VECTORS " + std::to_string(scene.termVectors()),
-                                           "DIRECTION_VECTORS " + std::to_string(scene.directionVectors())};
+    const auto defines = scene.transfer().defines();
     depthProgram = gl::Program::load({{GL_VERTEX_SHADER, "shaders/stage/mesh.vert"}, {GL_FRAGMENT_SHADER, "shaders/stage/depth.frag"}});
     shadeProgram = gl::Program::load({{GL_VERTEX_SHADER, "shaders/stage/mesh.vert"}, {GL_FRAGMENT_SHADER, "shaders/stage/shade.frag"}}, defines);
     backgroundProgram =
         gl::Program::load({{GL_VERTEX_SHADER, "shaders/stage/fullscreen.vert"}, {GL_FRAGMENT_SHADER, "shaders/stage/background.frag"}});
     resolveProgram = gl::Program::load({{GL_VERTEX_SHADER, "shaders/stage/fullscreen.vert"}, {GL_FRAGMENT_SHADER, "shaders/stage/resolve.frag"}});
     displayProgram = gl::Program::load({{GL_VERTEX_SHADER, "shaders/stage/fullscreen.vert"}, {GL_FRAGMENT_SHADER, "shaders/stage/display.frag"}});
-    if (scene.termVectors() > 0) lightEigen = gl::Buffer(sizeof(glm::vec4) * kMaxSgLights * static_cast<std::size_t>(scene.termVectors()));
+    if (scene.transfer().occludes()) lightProgram = gl::Program::loadCompute("shaders/stage/light_visibility.comp", defines);
 
     const SpecularTable table = makeSpecularTable();
     specularTable = gl::Texture::make2dArray(GL_RGBA32F, table.roughnessCount, table.cosineCount, SpecularTable::kLobeCount);
@@ -126,17 +127,26 @@ struct Renderer::Impl {
     return frame;
   }
 
-  /// The eigenfunctions at the lights' axes, which are the same for every pixel of the frame.
-  void uploadLightEigen(FrameBlock& frame) {
-    if (scene.termVectors() == 0 || frame.counts.x == 0) return;
-    std::vector<float> values;
-    for (int l = 0; l < frame.counts.x; ++l) {
-      auto& light = frame.sgLights[l];
-      const auto at = scene.eigenAt(glm::vec3(light.axisSharpness));
-      light.amplitude.w = at[0];
-      values.insert(values.end(), at.begin() + 1, at.end());
+  /// What each vertex sees of each SG light: the same for every pixel, and for every frame until a light turns.
+  void updateLightVisibility(const FrameBlock& frame) {
+    if (!scene.transfer().occludes() || frame.counts.x == 0) return;
+    std::vector<glm::vec4> wanted;
+    for (int l = 0; l < frame.counts.x; ++l) wanted.push_back(frame.sgLights[l].axisSharpness);
+    const std::size_t bytes = sizeof(std::uint32_t) * scene.transfer().vertexCount() * wanted.size();
+    if (!lightVisibility || lightVisibility.size() < bytes) {
+      lightVisibility = gl::Buffer(bytes);
+      knownLights.clear();
     }
-    lightEigen.write(0, std::span<const float>(values));
+    lightVisibility.bindBase(GL_SHADER_STORAGE_BUFFER, 5);
+    if (wanted == knownLights) return;
+    lightProgram.use();
+    const auto groups = (scene.transfer().vertexCount() + 63) / 64;
+    const std::size_t row = 32768;  // of work groups; a driver need not take more than 65535 in one dimension
+    lightProgram.set("rowGroups", static_cast<int>(row));
+    lightProgram.set("vertexCount", static_cast<unsigned>(scene.transfer().vertexCount()));
+    glDispatchCompute(static_cast<GLuint>(std::min(groups, row)), static_cast<GLuint>((groups + row - 1) / row), 1);
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+    knownLights = std::move(wanted);
   }
 
   void draw(const gl::Program& program, const GpuDraw& one) const {
@@ -200,14 +210,12 @@ struct Renderer::Impl {
     if (!environment) throw Error(ExitCode::failed, "render", "no environment was set", "call setEnvironment first");
     resize(settings.width, settings.height, settings.supersample);
     FrameBlock frame = frameBlock(camera, settings);
-    uploadLightEigen(frame);
     frameBuffer.write(0, std::span<const FrameBlock>(&frame, 1));
 
     totalTimer.begin();
     frameBuffer.bindBase(GL_UNIFORM_BUFFER, 0);
     scene.bindBuffers();
-    if (lightEigen) lightEigen.bindBase(GL_SHADER_STORAGE_BUFFER, 5);
-    scene.bindTransferTextures();
+    updateLightVisibility(frame);
     environment->bindTextures();
     specularTable.bind(9);
     albedoTable.bind(10);

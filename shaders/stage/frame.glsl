@@ -7,7 +7,7 @@ const uint kFlagShadows = 1u;
 
 struct SgLightBlock {
   vec4 axisSharpness;  // world axis, sharpness
-  vec4 amplitude;      // rgb radiance at the axis; w: SSDF mean at the axis
+  vec4 amplitude;      // rgb radiance at the axis; w unused
 };
 
 struct PunctualLightBlock {

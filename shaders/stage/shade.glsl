@@ -12,6 +12,10 @@
 #include "shaders/stage/transfer.glsl"
 #include "shaders/stage/environment.glsl"
 
+#if TERM_VECTORS > 0
+layout(std430, binding = 5) readonly buffer LightVisibilityBuffer { uint lightVisibility[]; };  // light_visibility.comp
+#endif
+
 layout(binding = 9) uniform sampler2DArray specularTable;  // runtime/brdf/specular_table.h
 layout(binding = 10) uniform sampler2D albedoTable;
 
@@ -79,6 +83,38 @@ float broadVisibility(Transfer t, vec3 axis) {
   return sum / weight;
 }
 
+// Visible share of a lobe; `distance` is the SSDF at its axis, `broad` what broadVisibility() says (used where there are no levels).
+float visibleShare(Transfer t, vec3 axis, float sharpness, float distance, float broad) {
+  if (!shadowed()) return 1.0;
+#if TERM_VECTORS > 0 && LEVELS > 0
+  VisibilitySource source = sourceOf(sharpness);
+  if (source.ssdf >= 1.0) return ssdfVisibleFraction(distance, sharpness);
+  float share = levelShareAt(t, axis, source);
+  return source.ssdf > 0.0 ? mix(share, ssdfVisibleFraction(distance, sharpness), source.ssdf) : share;
+#else
+  return mix(broad, ssdfVisibleFraction(distance, sharpness), smoothstep(log2(kBroadFrom), log2(kBroadTo), log2(sharpness)));
+#endif
+}
+
+// SSDF at the axis of an SG light, and the light's visible share.
+float lightShare(Transfer t, int light, float sharpness, out float distance) {
+  distance = kHalfPi;
+#if TERM_VECTORS > 0
+  if (!shadowed()) return 1.0;
+  vec2 seen = vec2(0.0);
+  for (int c = 0; c < 3; ++c)
+    seen += t.barycentric[c] * unpackHalf2x16(lightVisibility[t.corners[c] * uint(frame.counts.x) + uint(light)]);
+  distance = seen.x;
+#if LEVELS > 0
+  return mix(seen.y, ssdfVisibleFraction(distance, sharpness), sourceOf(sharpness).ssdf);
+#else
+  return ssdfVisibleFraction(distance, sharpness);
+#endif
+#else
+  return 1.0;
+#endif
+}
+
 // Mean radiance of light `l` alone under a normalised lobe, and the sharpness of their product.
 vec3 lightMean(int l, vec3 axis, float sharpness, out float productSharpness) {
   vec4 light = frame.sgLights[l].axisSharpness;
@@ -91,7 +127,7 @@ vec3 lightMean(int l, vec3 axis, float sharpness, out float productSharpness) {
 // Light that arrives through one reflection lobe.
 vec3 lobeRadiance(Surface s, Transfer t, vec3 axis, float sharpness, float broad) {
   float distance = ssdfAt(t, axis);
-  float own = mix(broad, visibleFraction(distance, sharpness), smoothstep(log2(kBroadFrom), log2(kBroadTo), log2(sharpness)));
+  float own = visibleShare(t, axis, sharpness, distance, broad);
   vec3 radiance = environmentMean(axis, sharpness) * own;
 #if TERM_VECTORS > 0
   if (shadowed()) {
@@ -101,8 +137,11 @@ vec3 lobeRadiance(Surface s, Transfer t, vec3 axis, float sharpness, float broad
       if (largestOf(mean) < 1.0e-5 * frame.sgLights[l].amplitude.r) continue;
       // The distance is 1-Lipschitz: between the two known axes it is close to linear.
       float lightSharpness = frame.sgLights[l].axisSharpness.w;
-      float between = mix(distance, ssdfAtLight(t, l), lightSharpness / (sharpness + lightSharpness));
-      radiance += mean * (ssdfVisibleFraction(between, productSharpness) - own);
+      float lightDistance;
+      lightShare(t, l, lightSharpness, lightDistance);
+      float towards = lightSharpness / (sharpness + lightSharpness);
+      vec3 between = mix(axis, frame.sgLights[l].axisSharpness.xyz, towards);
+      radiance += mean * (visibleShare(t, between, productSharpness, mix(distance, lightDistance, towards), broad) - own);
     }
   }
 #endif
@@ -136,7 +175,8 @@ vec3 diffuseLight(Surface s, Transfer t) {
     vec4 light = frame.sgLights[l].axisSharpness;
     float cosineMean = clampedCosineMean(dot(s.n, light.xyz), light.w);
     if (cosineMean < 1.0e-5) continue;
-    float v = visibleFraction(ssdfAtLight(t, l), light.w) * horizonShare(s, light.xyz, light.w);
+    float lightDistance;
+    float v = lightShare(t, l, light.w, lightDistance) * horizonShare(s, light.xyz, light.w);
     irradiance += frame.sgLights[l].amplitude.rgb * (sgUnitIntegral(light.w) * cosineMean * v);
   }
   return irradiance;
@@ -181,7 +221,8 @@ vec3 roughReflection(Surface s, Transfer t, vec3 albedo) {
     if (cosineMean < 1.0e-5) continue;
     float fresnel;
     float f = reflectance(s, cosineWeightedAxis(light.xyz, light.w, s.n), alphaUnderLight(s.alphaT, light.w), alphaUnderLight(s.alphaB, light.w), fresnel);
-    float v = visibleFraction(ssdfAtLight(t, l), light.w) * horizonShare(s, light.xyz, light.w);
+    float lightDistance;
+    float v = lightShare(t, l, light.w, lightDistance) * horizonShare(s, light.xyz, light.w);
     result += frame.sgLights[l].amplitude.rgb * (sgUnitIntegral(light.w) * cosineMean * f * v) * (s.f0 * (1.0 - fresnel) + fresnel);
   }
   return result;
@@ -190,7 +231,11 @@ vec3 roughReflection(Surface s, Transfer t, vec3 albedo) {
 vec3 smoothReflection(Surface s, Transfer t, vec3 albedo) {
   float cosineOut = dot(s.n, s.wo);
   vec3 x = incidenceTangent(s.n, s.wo);
+#if LEVELS > 0
+  float broad = 1.0;
+#else
   float broad = broadVisibility(t, s.n * (2.0 * cosineOut) - s.wo);
+#endif
   vec3 base = vec3(0.0), edge = vec3(0.0);
   if (!anisotropic(s)) {
     vec2 at;
