@@ -72,14 +72,6 @@ void checkOutputs(const ViewOptions& options, const ViewOptionTexts& texts) {
       if (isSameFile(path, environment)) throw usageError(option, "names the environment itself, which would be lost", "give another name");
 }
 
-void checkEnvironment(const std::string& name) {
-  const auto& builtin = builtinEnvironmentNames();
-  if (std::find(builtin.begin(), builtin.end(), name) != builtin.end()) return;
-  std::error_code ignored;
-  if (std::filesystem::exists(name, ignored)) return;
-  throw inputError(name, "no such file, and no built-in environment of that name", "give a .hdr or .exr file, or one of " + joined(builtin));
-}
-
 }  // namespace
 
 void declareViewOptions(CLI::App& app, ViewOptions& options, ViewOptionTexts& texts) {
@@ -146,7 +138,7 @@ void finishViewOptions(ViewOptions& options, const ViewOptionTexts& texts) {
   if (options.environments.empty()) options.environments = {"sunny"};
 
   checkOutputs(options, texts);
-  for (const auto& name : options.environments) checkEnvironment(name);
+  for (const auto& name : options.environments) requireEnvironment(name);
 }
 
 glm::ivec2 parseSize(const std::string& text) {
