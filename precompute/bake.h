@@ -18,7 +18,7 @@ struct BakeSettings {
   int directionCount = 32;          ///< fixed broad lobes per vertex, a multiple of 4, 8..64
   float directionSharpness = 32.0f;
   float creaseAngle = 1.0471976f;   ///< radians; sharper edges are split where the file has no normals
-  RefineSettings refine;            ///< off unless its error is above 0
+  RefineSettings refine{};          ///< off unless its error is above 0
   std::uint32_t seed = 0;
   int threads = 0;                  ///< 0: all cores. The result never depends on it.
 };

@@ -53,7 +53,7 @@ class Refinement {
         report_(report),
         progress_(progress),
         rays_(source_),
-        probe_(rays_, settings.resolution > 0 ? settings.resolution : settings.error < 0.01f ? 64 : 32),
+        probe_(rays_, settings.resolution > 0 ? settings.resolution : settings.error < 0.02f ? 64 : 32),
         firstNew_(scene.primitives.size(), 0),
         ssdf_(scene.primitives.size()) {
     const auto bounds = boundsOf(scene);
