@@ -31,8 +31,8 @@ void requireValid(const RefineSettings& settings) {
   require(settings.error > 0.0f && settings.error <= 1.0f, "refine error", "give a share above 0, up to 1");
   require(settings.leastEdge > 0.0f && settings.leastEdge <= 1.0f, "refine least edge", "give a share above 0, up to 1");
   require(settings.spacing > 0.0f && settings.spacing <= 1.0f, "refine spacing", "give a share above 0, up to 1");
-  require(settings.resolution >= 0 && settings.resolution <= 256 && settings.resolution % 4 == 0, "refine resolution",
-          "give a multiple of 4, up to 256");
+  require(settings.resolution >= 16 && settings.resolution <= 256 && settings.resolution % 4 == 0, "refine resolution",
+          "give a multiple of 4 from 16 to 256");
 }
 
 /// The first pair of vertices of an edge: the same in every pass until the edge is split.
@@ -53,7 +53,7 @@ class Refinement {
         report_(report),
         progress_(progress),
         rays_(source_),
-        probe_(rays_, settings.resolution > 0 ? settings.resolution : settings.error < 0.02f ? 64 : 32),
+        probe_(rays_, settings.resolution),
         firstNew_(scene.primitives.size(), 0),
         ssdf_(scene.primitives.size()) {
     const auto bounds = boundsOf(scene);
