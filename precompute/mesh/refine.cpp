@@ -235,7 +235,8 @@ class Refinement {
       tangential = length > 0.3 ? tangential / length : glm::dvec3(0.0);
       const std::array corners{WeightedSsdf{&ssdf_[wing.primitive][wing.a], static_cast<float>(1.0 - share)},
                                WeightedSsdf{&ssdf_[wing.primitive][wing.b], static_cast<float>(share)}};
-      worst = std::max(worst, probe_.wrongShare(viewpointAt(primitive, glm::mix(a, b, share), n, tangential), planes, corners, scratch));
+      const auto viewpoint = viewpointAt(primitive, glm::mix(a, b, share), n, tangential);
+      worst = std::max(worst, probe_.error(viewpoint, planes, corners, enough_, scratch));
     }
     return worst;
   }
@@ -257,7 +258,7 @@ class Refinement {
         }
         const auto n = glm::vec3(glm::normalize(normal));
         const std::array planes{planeOf(primitive, face.firstIndex, n)};
-        const double error = probe_.wrongShare(viewpointAt(primitive, position, n, glm::dvec3(0.0)), planes, corners, scratch);
+        const double error = probe_.error(viewpointAt(primitive, position, n, glm::dvec3(0.0)), planes, corners, enough_, scratch);
         if (error > static_cast<double>(settings_.error)) return error;
       }
     }
@@ -323,6 +324,7 @@ class Refinement {
   const std::function<void(double)>& progress_;
   const RayScene rays_;
   const TransferProbe probe_;
+  const double enough_ = 0.25 * static_cast<double>(settings_.error);  ///< a quarter of the directions may be this wrong
   double leastEdge_ = 0.0, spacing_ = 0.0;
   std::vector<std::uint32_t> firstNew_;       ///< per primitive: vertices from here on came with the last pass
   std::vector<std::vector<CoarseSsdf>> ssdf_; ///< per primitive and vertex; empty where nothing is measured

@@ -10,7 +10,7 @@
 namespace chiaro {
 
 struct RefineSettings {
-  float error = 0.0f;                ///< E: share of wrong solid angle, 0..1; 0 leaves the mesh alone
+  float error = 0.0f;                ///< E, see below, 0..1; 0 leaves the mesh alone
   std::size_t mostVertices = 200000; ///< of the whole scene, never passed
   float leastEdge = 1.0f / 256.0f;   ///< of the scene's diagonal; shorter edges are not split
   float spacing = 1.0f / 32.0f;      ///< of the scene's diagonal; points looked at are at most this far apart
@@ -30,11 +30,14 @@ struct RefineReport {
 
 /// Splits the edges of `scene` (as prepareScene() makes it) until the transfer interpolated over it is right to E.
 ///
-/// The error at a point is the share of solid angle where the sign of the SSDF interpolated from the corners differs from what is traced
-/// there (Wang et al. 2009 interpolate S, whose zero set is the shadow's edge): above the horizon, double-sided all around, without what
-/// is behind the point's own triangles, which no vertex on a curved surface sees either. An edge's is the largest at points on it, its
-/// midpoint among them. A triangle none of whose edges is above E is looked at inside, on a grid; if that is above E its longest edge
-/// counts as such, so a shadow wholly inside a wall is found if it is wider than `spacing`.
+/// The error at a point compares the sign of the SSDF interpolated from the corners, which is what is shaded with, with what is traced
+/// there: w / sqrt(a s), of the solid angles of wrong sign (w), of all directions (a) and of those seen by either (s). It lies between the
+/// share of a whole sky, w / a, and the share of the light that comes in, w / s: in a room all of it comes through the windows. At equal
+/// vertices it is better than w / a by 0.7 dB in a living room, and the same in the open. All directions are those above the horizon,
+/// double-sided all around, without what is behind the point's own triangles, which no vertex on a curved surface sees either.
+///
+/// An edge's error is the largest at points on it, its midpoint among them. A triangle none of whose edges is above E is looked at inside,
+/// on a grid; if that is above E its longest edge counts as such, so a shadow wholly inside a wall is found if it is wider than `spacing`.
 ///
 /// Edges are the same where their positions are, across creases, texture seams and primitives: split on all sides, or none. With an edge the
 /// longest of its triangles are split (Rivara 1984): no angle becomes less than half of the smallest it came from. Half-edges would be in

@@ -37,11 +37,14 @@ class TransferProbe {
 
   CoarseSsdf trace(const Viewpoint& viewpoint, Scratch& scratch) const;
 
-  /// Share of the solid angle where the interpolated sign is wrong: RefineSettings::error. planes: normals of the triangles the point is on.
-  double wrongShare(const Viewpoint& viewpoint, std::span<const glm::vec3> planes, std::span<const WeightedSsdf> corners,
+  /// RefineSettings::error of interpolation at a point. planes: normals of the triangles it is on. A quarter of the directions is enough
+  /// where the error among them is no more than `enough`.
+  double error(const Viewpoint& viewpoint, std::span<const glm::vec3> planes, std::span<const WeightedSsdf> corners, double enough,
                     Scratch& scratch) const;
 
  private:
+  bool inPart(std::size_t tile, std::size_t part) const;
+
   OctahedralGrid grid_;
   const RayScene& rays_;
 };

@@ -25,7 +25,7 @@ constexpr const char* kExamples = R"(Examples:
   chiaro-precompute bunny.ply -o bunny.glb --terms 96 --json bake.json
       more terms: sharper shadows of small lights, more bytes a vertex; bake.json says how far off each is
   chiaro-precompute room.gltf -o room.glb --resolution 128 --threads 8
-  chiaro-precompute room.gltf -o room.glb --refine 0.02
+  chiaro-precompute room.gltf -o room.glb --refine 0.05
       more triangles where walls and floors have too few for their shadows
   chiaro-view baked.glb
       shows the result
@@ -57,9 +57,9 @@ void declare(CLI::App& app, Options& options) {
                        "Where a file has no normals, edges bent by more than this stay sharp, 0 to 180"),
         "A");
   shown(app.add_option("--refine", settings.refine.error,
-                       "Split triangles until interpolation confuses visible and hidden in at most this share of directions, 0 is off"),
+                       "Split triangles until interpolating what corners see is wrong by at most this share, 0 to 1; 0 is off"),
         "E");
-  shown(app.add_option("--refine-vertices", settings.refine.mostVertices, "Most vertices that --refine may make of the scene"), "N");
+  shown(app.add_option("--refine-vertices", settings.refine.mostVertices, "Most vertices the scene may have after --refine"), "N");
   shown(app.add_option("--seed", settings.seed, "Of the random choices; the same seed gives the same file"), "N");
   shown(app.add_option("--threads", settings.threads, "CPU threads, 0 is all; never changes the result"), "N");
   auto* quiet = app.add_flag("-q,--quiet", options.quiet, "Print nothing but errors");
