@@ -79,6 +79,7 @@ void finish(Options& options) {
   inRange("--directions", settings.directionCount, 8, 64);
   inRange("--crease-angle-deg", options.creaseAngleDegrees, 0, 180);
   inRange("--refine", static_cast<double>(settings.refine.error), 0, 1);
+  inRange("--refine-vertices", static_cast<double>(settings.refine.mostVertices), 0, 1e9);
   inRange("--threads", settings.threads, 0, 1024);
   if (settings.resolution % 4 != 0) throw usageError("--resolution", "is not a multiple of 4", "use 32, 64, 128, ...");
   if (settings.directionCount % 4 != 0) throw usageError("--directions", "is not a multiple of 4", "use 16, 32, 64, ...");
