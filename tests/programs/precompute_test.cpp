@@ -138,7 +138,7 @@ TEST(Precompute, WritesASceneAndItsFigures) {
 
 TEST(Precompute, RefinesAndSaysSo) {
   ASSERT_EQ(bakeTable("unrefined.glb", {"--json", "unrefined.json"}).code, 0);
-  const auto finished = bakeTable("refined.glb", {"--json", "refined.json", "--refine", "0.02", "--refine-vertices", "400"});
+  const auto finished = bakeTable("refined.glb", {"--json", "refined.json", "--refine", "0.005", "--refine-vertices", "300"});
   ASSERT_EQ(finished.code, 0) << finished.err;
   EXPECT_NE(finished.out.find("refined: "), std::string::npos) << finished.out;
   EXPECT_NE(finished.err.find("refinement: 100 %"), std::string::npos) << finished.err;
@@ -149,13 +149,13 @@ TEST(Precompute, RefinesAndSaysSo) {
   EXPECT_GT(refinement.at("vertices_added"), 0);
   EXPECT_EQ(json.at("vertices").get<int>() - plain.at("vertices").get<int>(), refinement.at("vertices_added"));
   EXPECT_EQ(json.at("triangles").get<int>() - plain.at("triangles").get<int>(), refinement.at("triangles_added"));
-  EXPECT_LE(json.at("vertices"), 400);
+  EXPECT_LE(json.at("vertices"), 300);
   EXPECT_GT(refinement.at("edges_left_over_budget"), 0);
   EXPECT_GT(refinement.at("passes"), 0);
-  EXPECT_GT(refinement.at("worst_error_left"), 0.02);
+  EXPECT_GT(refinement.at("worst_error_left"), 0.005);
   EXPECT_GT(refinement.at("rays_traced"), 0);
   EXPECT_GT(json.at("seconds").at("refinement"), 0.0);
-  EXPECT_EQ(json.at("settings").at("refine_vertices"), 400);
+  EXPECT_EQ(json.at("settings").at("refine_vertices"), 300);
   EXPECT_EQ(readBakedScene("refined.glb").scene.vertexCount(), json.at("vertices"));
 }
 
