@@ -136,11 +136,26 @@ void writeFileAtomically(const std::filesystem::path& path, std::string_view tex
 
 void requireWritable(const std::filesystem::path& path) {
   std::error_code error;
-  const auto folder = folderOf(resolved(path));
+  const auto target = resolved(path);
+  const auto folder = folderOf(target);
   if (!std::filesystem::is_directory(folder, error))
     throw outputError(path.string(), "its folder does not exist", "create " + folder.string() + " first");
   if (::access(folder.c_str(), W_OK) != 0)
     throw outputError(path.string(), "cannot write in its folder: " + reason(), "choose a writable folder");
+  struct stat status {};
+  if (::lstat(target.c_str(), &status) != 0 && errno != ENOENT)
+    throw outputError(path.string(), "cannot be written: " + reason(), "choose another name");
+  // Root may write everywhere, even where no file can be made, such as /proc.
+  const Temporary probe(target);
+}
+
+bool isSameFile(const std::filesystem::path& a, const std::filesystem::path& b) {
+  if (a.empty() || b.empty()) return false;
+  std::error_code error;
+  if (std::filesystem::equivalent(a, b, error)) return true;
+  const auto canonicalA = std::filesystem::weakly_canonical(std::filesystem::absolute(a, error), error);
+  const auto canonicalB = std::filesystem::weakly_canonical(std::filesystem::absolute(b, error), error);
+  return !canonicalA.empty() && canonicalA == canonicalB;
 }
 
 }  // namespace chiaro

@@ -19,8 +19,11 @@ std::vector<std::uint8_t> readFile(const std::filesystem::path& path);
 void writeFileAtomically(const std::filesystem::path& path, std::span<const std::uint8_t> bytes);
 void writeFileAtomically(const std::filesystem::path& path, std::string_view text);
 
-/// Throws Error (unwritableOutput) when `path` could not be written: no such folder, no permission, or a folder itself.
-/// Called before long work, so that an hour's bake is not lost to a typing mistake.
+/// Throws Error (unwritableOutput) when `path` could not be written: no such folder, no permission, a name that is too long, or
+/// a folder itself. Called before long work, so that an hour's bake is not lost to a typing mistake. Leaves nothing behind.
 void requireWritable(const std::filesystem::path& path);
+
+/// Whether both paths lead to one file, however they are spelt and through whatever links. Neither needs to exist.
+bool isSameFile(const std::filesystem::path& a, const std::filesystem::path& b);
 
 }  // namespace chiaro

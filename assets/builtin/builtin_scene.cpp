@@ -59,7 +59,7 @@ Scene builtinScene(const std::string& name) {
   const std::string bare = isBuiltinName(name) ? name.substr(kPrefix.size()) : name;
   if (bare == "ornament") return builtin::ornament();
   if (bare == "sphere") return sphere();
-  throw usageError(name, "no built-in scene of that name", "use builtin:ornament or builtin:sphere");
+  throw usageError(std::string(kPrefix) + bare, "no built-in scene of that name", "use builtin:ornament or builtin:sphere");
 }
 
 }  // namespace chiaro

@@ -192,17 +192,22 @@ const std::vector<std::string>& builtinEnvironmentNames() {
   return names;
 }
 
+void requireEnvironment(const std::string& nameOrPath) {
+  const auto& builtin = builtinEnvironmentNames();
+  if (std::find(builtin.begin(), builtin.end(), nameOrPath) != builtin.end()) return;
+  std::error_code ignored;
+  if (std::filesystem::exists(nameOrPath, ignored)) return;
+  throw inputError(nameOrPath, "no such file, and no built-in environment of that name",
+                   "use sunny, overcast, windows, white, or a .hdr or .exr file");
+}
+
 Environment loadEnvironment(const std::string& nameOrPath) {
+  requireEnvironment(nameOrPath);
   if (nameOrPath == "sunny") return {nameOrPath, sunny()};
   if (nameOrPath == "overcast") return {nameOrPath, overcast()};
   if (nameOrPath == "windows") return {nameOrPath, windows()};
   if (nameOrPath == "white") return {nameOrPath, paint([](glm::dvec3) { return Look{glm::dvec3(1.0), 0}; })};
   const std::filesystem::path path(nameOrPath);
-  std::error_code ignored;
-  if (path.extension().empty() && !std::filesystem::exists(path, ignored)) {
-    throw usageError(nameOrPath, "no built-in environment of that name",
-                     "use sunny, overcast, windows, white, or a .hdr or .exr file");
-  }
   return {path.stem().string(), readHdrImage(path)};
 }
 

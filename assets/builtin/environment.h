@@ -18,6 +18,9 @@ struct Environment {
 /// Names of the built-in environments: "sunny", "overcast", "windows", and "white" (radiance 1 everywhere).
 const std::vector<std::string>& builtinEnvironmentNames();
 
+/// Throws Error (unreadableInput) when the name is neither built in nor that of a file. Called before long work.
+void requireEnvironment(const std::string& nameOrPath);
+
 /// A built-in environment by name, else the .hdr or .exr file of that name. Throws Error.
 Environment loadEnvironment(const std::string& nameOrPath);
 

@@ -1,9 +1,11 @@
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
 #include <numbers>
+#include <string_view>
 
 #include "assets/builtin/builtin_scene.h"
 #include "assets/file.h"
@@ -12,6 +14,7 @@
 #include "assets/program/progress_bar.h"
 #include "assets/scene/load_scene.h"
 #include "assets/transfer/transfer.h"
+#include "assets/transfer/transfer_format.h"
 #include "precompute/bake.h"
 #include "precompute/program/bake_json.h"
 
@@ -66,6 +69,13 @@ void declare(CLI::App& app, Options& options) {
   app.add_flag("-v,--verbose", options.verbose, "Print warnings and every figure")->excludes(quiet);
 }
 
+/// Whether a bake wrote this file: it may be baked again in its own place. An artist's own file must not be replaced.
+bool isBaked(const std::filesystem::path& path) {
+  const auto bytes = readFile(path);
+  const std::string_view mark = kTransferExtension;
+  return std::search(bytes.begin(), bytes.end(), mark.begin(), mark.end()) != bytes.end();
+}
+
 void finish(Options& options) {
   auto& settings = options.settings;
   const auto inRange = [](const char* name, double value, double least, double most) {
@@ -87,8 +97,10 @@ void finish(Options& options) {
 
   if (options.output.extension() != ".glb")
     throw usageError("--output", "\"" + options.output.string() + "\" does not end in .glb", "name it so: it is a binary glTF");
-  if (!options.json.empty() && options.json == options.output)
-    throw usageError("--json", "names the same file as --output", "give two names");
+  if (isSameFile(options.json, options.output)) throw usageError("--json", "names the same file as --output", "give two names");
+  const auto lost = [](const char* option) { return usageError(option, "names the scene itself, which would be lost", "give another name"); };
+  if (isSameFile(options.json, options.scene)) throw lost("--json");
+  if (isSameFile(options.output, options.scene) && !isBaked(options.scene)) throw lost("--output");
   // An hour's work should not be lost to a typing mistake.
   requireWritable(options.output);
   if (!options.json.empty()) requireWritable(options.json);
@@ -104,6 +116,7 @@ void printRepairs(const RepairReport& repairs) {
       {repairs.isolatedVertices, "unused vertices dropped"},
       {repairs.degenerateTriangles, "triangles without area dropped"},
       {repairs.duplicateTriangles, "repeated triangles dropped"},
+      {repairs.trianglesTurned, "triangles of an inside-out mesh turned"},
       {repairs.nonManifoldEdges, "non-manifold edges kept"},
       {repairs.boundaryEdges, "boundary edges"},
       {repairs.normalsComputed, "normals computed"},
@@ -127,6 +140,10 @@ void printSummary(const Options& options, const BakeRun& run, const BakeReport& 
               report.vertices, report.triangles, report.terms, report.bytesPerVertex, static_cast<double>(report.raysTraced) * 1e-6,
               run.loadSeconds + report.seconds.total + run.writeSeconds);
   if (options.settings.refine.error > 0.0f) printRefinement(static_cast<double>(options.settings.refine.error), report.refinement);
+  // What the user made and will miss in the picture is said without being asked for; each line of it with --verbose.
+  if (!run.warnings.empty() && !options.verbose)
+    std::printf("%zu warning%s: %s%s\n", run.warnings.size(), run.warnings.size() == 1 ? "" : "s", run.warnings.front().c_str(),
+                run.warnings.size() == 1 ? "" : ", ... (--verbose or --json lists them)");
   if (options.verbose) {
     std::printf("repairs:\n");
     printRepairs(report.repairs);

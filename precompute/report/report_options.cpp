@@ -110,6 +110,7 @@ void finishReportOptions(ReportOptions& options, const ReportOptionTexts& texts)
     throw usageError("--fail-under", "is not a number", "give decibels such as 30");
   if (options.threads < 0 || options.threads > 1024)
     throw usageError("--threads", "must lie between 0 and 1024", "give 0 for all cores");
+  for (const std::string& name : options.environments) requireEnvironment(name);
   std::error_code failure;
   std::filesystem::create_directories(options.output, failure);
   if (failure)

@@ -21,7 +21,7 @@ void check(const Environment& environment, const SgEnvironmentSettings& settings
                      "give an equirectangular image");
   for (const glm::vec3& texel : map.texels)
     if (!(texel.x >= 0 && texel.y >= 0 && texel.z >= 0 && texel.x + texel.y + texel.z <= 3e30f))
-      throw inputError(environment.name, "the environment has a negative, infinite or undefined radiance", "clean the image");
+      throw inputError(environment.name, "the environment has a radiance that is negative, undefined or above 1e30", "clean the image");
   const int resolution = settings.finestResolution;
   if (resolution < 16 || resolution > 1024 || (resolution & (resolution - 1)) != 0)
     throw usageError("finestResolution", std::to_string(resolution) + " is no power of two from 16 to 1024", "use 512");

@@ -48,9 +48,9 @@ Framebuffer Framebuffer::makeLayer(const Texture& color, int level, int layer) {
 void Framebuffer::requireComplete() const {
   const GLenum status = glCheckNamedFramebufferStatus(id(), GL_FRAMEBUFFER);
   if (status == GL_FRAMEBUFFER_COMPLETE) return;
-  char hex[16];
-  std::snprintf(hex, sizeof hex, "0x%04x", status);
-  throw Error(ExitCode::failed, "OpenGL", std::string("framebuffer incomplete, status ") + hex, "the driver cannot draw to these texture formats together");
+  char what[96];
+  std::snprintf(what, sizeof what, "the driver cannot draw to a picture of %dx%d (framebuffer status 0x%04x)", width_, height_, status);
+  throw Error(ExitCode::failed, "OpenGL", what, "use a smaller picture or fewer points a pixel");
 }
 
 void Framebuffer::bind() const {

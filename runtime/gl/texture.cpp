@@ -18,7 +18,7 @@ int driverLimit(GLenum name) {
 void requireAtMost(const char* what, int value, int limit) {
   if (value >= 1 && value <= limit) return;
   throw Error(ExitCode::failed, "OpenGL", std::string("texture ") + what + " " + std::to_string(value) + " is outside 1.." + std::to_string(limit),
-              "use a smaller one");
+              "use a smaller one, or for a picture fewer points a pixel");
 }
 
 bool isFilterable(GLenum internalFormat) {

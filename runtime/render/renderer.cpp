@@ -229,7 +229,7 @@ struct Renderer::Impl {
     timed(0, [&] { drawDepth(); });
     timed(1, [&] { drawShaded(); });
     timed(2, [&] {
-      if (!settings.background) return;
+      if (!settings.background || settings.debugView != DebugView::none) return;
       glDisable(GL_CULL_FACE);
       glDepthFunc(GL_LEQUAL);
       fullscreen(backgroundProgram);
@@ -257,9 +257,10 @@ struct Renderer::Impl {
     glDisable(GL_FRAMEBUFFER_SRGB);
     noAttributes.bind();
     resolved->color.bind(0);
-    displayProgram.set("exposure", last.exposure);
     // Debug views are data, not light.
-    displayProgram.set("toneMap", static_cast<int>(last.debugView == DebugView::none ? last.toneMap : ToneMap::clamp));
+    const bool light = last.debugView == DebugView::none;
+    displayProgram.set("exposure", light ? last.exposure : 1.0f);
+    displayProgram.set("toneMap", static_cast<int>(light ? last.toneMap : ToneMap::clamp));
     fullscreen(displayProgram);
   }
 

@@ -65,16 +65,11 @@ void checkOutputs(const ViewOptions& options, const ViewOptionTexts& texts) {
     requireWritable(options.picture);
   }
   if (!options.timings.empty()) requireWritable(options.timings);
-  if (!options.picture.empty() && options.picture == options.timings)
-    throw usageError("--json", "names the same file as --output", "give two names");
-}
-
-void checkEnvironment(const std::string& name) {
-  const auto& builtin = builtinEnvironmentNames();
-  if (std::find(builtin.begin(), builtin.end(), name) != builtin.end()) return;
-  std::error_code ignored;
-  if (std::filesystem::exists(name, ignored)) return;
-  throw inputError(name, "no such file, and no built-in environment of that name", "give a .hdr or .exr file, or one of " + joined(builtin));
+  if (isSameFile(options.picture, options.timings)) throw usageError("--json", "names the same file as --output", "give two names");
+  if (isSameFile(options.timings, options.scene)) throw usageError("--json", "names the scene itself, which would be lost", "give another name");
+  for (const auto& environment : options.environments)
+    for (const auto& [path, option] : {std::pair{options.picture, "--output"}, std::pair{options.timings, "--json"}})
+      if (isSameFile(path, environment)) throw usageError(option, "names the environment itself, which would be lost", "give another name");
 }
 
 }  // namespace
@@ -143,7 +138,7 @@ void finishViewOptions(ViewOptions& options, const ViewOptionTexts& texts) {
   if (options.environments.empty()) options.environments = {"sunny"};
 
   checkOutputs(options, texts);
-  for (const auto& name : options.environments) checkEnvironment(name);
+  for (const auto& name : options.environments) requireEnvironment(name);
 }
 
 glm::ivec2 parseSize(const std::string& text) {

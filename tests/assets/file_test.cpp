@@ -70,6 +70,23 @@ TEST(File, MissingFoldersAndFiles) {
   EXPECT_EQ(filesIn(folder), 0u);
 }
 
+TEST(File, NamesThatNoFileCanHaveAreFoundBeforeWriting) {
+  const Folder folder;
+  EXPECT_THAT(errorOf([&] { requireWritable(folder / std::string(300, 'a')); }, ExitCode::unwritableOutput), HasSubstr("too long"));
+  EXPECT_THAT(errorOf([] { requireWritable("/proc/a"); }, ExitCode::unwritableOutput), HasSubstr("/proc/a"));
+}
+
+TEST(File, OneFileByTwoNames) {
+  const Folder folder;
+  writeFileAtomically(folder / "a", "x");
+  std::filesystem::create_symlink("a", folder / "link");
+  EXPECT_TRUE(isSameFile(folder / "a", folder / "link"));
+  EXPECT_TRUE(isSameFile(folder / "missing", folder.path() / "." / "missing"));
+  EXPECT_TRUE(isSameFile("missing", "./missing"));
+  EXPECT_FALSE(isSameFile(folder / "a", folder / "b"));
+  EXPECT_FALSE(isSameFile("", ""));
+}
+
 // A child writes ever new whole files over one another until it is killed; whatever moment that is, the file is one of them.
 TEST(File, KilledAtAnyMomentLeavesAWholeFile) {
   const Folder folder;

@@ -81,7 +81,7 @@ TEST(Precompute, WrongUsageIsOneLineAndTwo) {
       {{"--directions", "9"}, "--directions"},  {{"--directions", "4"}, "--directions"},   {{"--crease-angle-deg", "nan"}, "--crease-angle-deg"},
       {{"--crease-angle-deg", "-1"}, "--crease-angle-deg"}, {{"--threads", "-2"}, "--threads"}, {{"--refine", "1.5"}, "--refine"},
       {{"--refine", "-0.1"}, "--refine"}, {{"--refine", "nan"}, "--refine"}, {{"--refine-vertices", "-1"}, "--refine-vertices"}, {{"--frobnicate"}, "--frobnicate"},
-      {{"--quiet", "--verbose"}, "verbose"},    {{"--json", "out.glb"}, "--json"}};
+      {{"--quiet", "--verbose"}, "verbose"},    {{"--json", "out.glb"}, "--json"}, {{"--json", "./out.glb"}, "--json"}};
   for (const auto& [options, about] : cases) {
     std::vector<std::string> arguments{"builtin:sphere", "-o", "out.glb"};
     arguments.insert(arguments.end(), options.begin(), options.end());
@@ -90,6 +90,16 @@ TEST(Precompute, WrongUsageIsOneLineAndTwo) {
   expectOneLine(precompute({"builtin:sphere", "-o", "out.ply"}), ExitCode::usage, ".glb");
   expectOneLine(precompute({"builtin:nonesuch", "-o", "out.glb"}), ExitCode::usage, "nonesuch");
   EXPECT_FALSE(std::filesystem::exists("out.glb"));
+}
+
+TEST(Precompute, NeverWritesOverItsScene) {
+  std::ofstream("source.glb") << "precious";
+  std::filesystem::remove("link.glb");  // of an earlier run
+  std::filesystem::create_symlink("source.glb", "link.glb");
+  for (const char* output : {"source.glb", "./source.glb", "link.glb"})
+    expectOneLine(precompute({"source.glb", "-o", output}), ExitCode::usage, "--output: names the scene itself");
+  expectOneLine(precompute({"source.glb", "-o", "out.glb", "--json", "source.glb"}), ExitCode::usage, "--json: names the scene itself");
+  EXPECT_EQ(std::filesystem::file_size("source.glb"), 8u);
 }
 
 TEST(Precompute, UnreadableInputIsOneLineAndThree) {
@@ -106,6 +116,8 @@ TEST(Precompute, UnwritableOutputIsFoundBeforeTheWork) {
   std::filesystem::create_directory("folder.glb");
   expectOneLine(precompute({"missing.ply", "-o", "folder.glb"}), ExitCode::unwritableOutput, "folder.glb");
   expectOneLine(precompute({"missing.ply", "-o", "out.glb", "--json", "no/such/folder/out.json"}), ExitCode::unwritableOutput, "out.json");
+  expectOneLine(precompute({"missing.ply", "-o", std::string(300, 'a') + ".glb"}), ExitCode::unwritableOutput, "too long");
+  expectOneLine(precompute({"missing.ply", "-o", "/proc/out.glb"}), ExitCode::unwritableOutput, "/proc/out.glb");
 }
 
 TEST(Precompute, WritesASceneAndItsFigures) {
@@ -165,6 +177,16 @@ TEST(Precompute, QuietIsQuietAndVerboseSaysEverything) {
   EXPECT_TRUE(quiet.out.empty() && quiet.err.empty()) << quiet.out << quiet.err;
   const auto verbose = bakeTable("verbose.glb", {"-v"});
   for (const char* word : {"ssdf_rms_radians", "normals computed", "peak memory"}) EXPECT_NE(verbose.out.find(word), std::string::npos) << word;
+}
+
+TEST(Precompute, SaysUnaskedWhatItLeavesOut) {
+  std::ofstream("lines.obj") << "mtllib missing.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl gone\nf 1 2 3\n";
+  std::vector<std::string> arguments{"lines.obj", "-o", "lines.glb"};
+  arguments.insert(arguments.end(), kFast.begin(), kFast.end());
+  const auto finished = precompute(arguments);
+  EXPECT_EQ(finished.code, 0) << finished.err;
+  EXPECT_NE(finished.out.find("warning"), std::string::npos) << finished.out;
+  EXPECT_NE(finished.out.find("missing.mtl"), std::string::npos) << finished.out;
 }
 
 TEST(Precompute, ThreadsDoNotChangeTheFileSeedsDo) {

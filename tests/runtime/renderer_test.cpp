@@ -104,6 +104,26 @@ TEST(Renderer, ShadowsDarkenAndCanBeTurnedOff) {
   }
 }
 
+// Debug views are data: the light's exposure and tone map must not change them, nor the background stand behind them.
+TEST(Renderer, DebugViewsShowTheirValues) {
+  const BakedScene baked = sphereOf(material(0.5f, 0, glm::vec3(0.5f)));
+  Renderer renderer(baked);
+  renderer.setEnvironment(prepareEnvironment(loadEnvironment("white")));
+  RenderSettings settings = smallPicture(33);
+  settings.background = true;
+  settings.exposure = 0.1f;
+  settings.toneMap = ToneMap::aces;
+  const std::pair<DebugView, int> expected[] = {
+      {DebugView::visibility, 255}, {DebugView::albedo, 188}, {DebugView::roughness, 188}};  // 188: one half, as sRGB
+  for (const auto& [view, byte] : expected) {
+    settings.debugView = view;
+    renderer.render(defaultCamera(baked.scene, 1), settings);
+    const Image8 picture = renderer.readDisplay();
+    EXPECT_NEAR(picture.texels[4 * (16 * 33 + 16)], byte, 1) << static_cast<int>(view);
+    EXPECT_EQ(picture.texels[0], 0) << "the corner, which nothing covers";
+  }
+}
+
 // Materials at their extremes and a tilted camera: every pixel finite and not negative.
 TEST(Renderer, ExtremesStayFinite) {
   const SgEnvironment sunny = prepareEnvironment(loadEnvironment("sunny"));
