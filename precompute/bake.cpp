@@ -123,6 +123,7 @@ TransferFacts factsOf(const BakeSettings& settings, const BakeReport& report) {
       {"settings.directions", settings.directionCount},
       {"settings.direction_sharpness", static_cast<double>(settings.directionSharpness)},
       {"settings.crease_angle", static_cast<double>(settings.creaseAngle)},
+      {"settings.refine", static_cast<double>(settings.refine.error)},
       {"settings.seed", settings.seed},
       {"rays_traced", static_cast<double>(report.raysTraced)},
   };
@@ -143,9 +144,11 @@ BakedScene bake(const Scene& scene, const BakeSettings& settings, BakeReport& re
   report = {};
   BakedScene baked;
   baked.scene = prepareScene(scene, settings.creaseAngle, report.repairs);
+  if (baked.scene.triangleCount() == 0) throw inputError("scene", "has no triangle with an area", "give a file with a surface in it");
+  if (settings.refine.error != 0.0f)
+    baked.scene = refineScene(std::move(baked.scene), settings.refine, settings.threads, report.refinement, stage("refinement"));
   report.vertices = baked.scene.vertexCount();
   report.triangles = baked.scene.triangleCount();
-  if (report.triangles == 0) throw inputError("scene", "has no triangle with an area", "give a file with a surface in it");
 
   const RayScene rays(baked.scene);
   const OctahedralGrid grid(settings.resolution);

@@ -8,6 +8,7 @@
 
 #include "assets/scene/scene.h"
 #include "assets/transfer/transfer.h"
+#include "precompute/mesh/refine.h"
 
 namespace chiaro {
 
@@ -30,6 +31,7 @@ struct BakeSettings {
   int directionCount = 32;          ///< fixed broad lobes per vertex, a multiple of 4, 8..64
   float directionSharpness = 32.0f;
   float creaseAngle = 1.0471976f;   ///< radians; sharper edges are split where the file has no normals
+  RefineSettings refine{};          ///< off unless its error is above 0
   std::uint32_t seed = 0;
   int threads = 0;                  ///< 0: all cores. The result never depends on it.
 };
@@ -56,6 +58,7 @@ struct BakeReport {
   double bytesPerVertex = 0.0;
   struct { double visibility = 0, ssdf = 0, compression = 0, total = 0; } seconds;
   RepairReport repairs;
+  RefineReport refinement;
   /// Error of what is stored, measured against the traced signal over all vertices (names in docs/programs.md):
   /// "ssdf_rms_radians", "ssdf_sign_share", "ssdf_quantisation_rms_radians", "visible_fraction_mean_abs_<lambda>", ...
   std::vector<std::pair<std::string, double>> error;
@@ -64,7 +67,7 @@ struct BakeReport {
 /// stage name, share done in [0,1]. Called from one thread at a time.
 using ProgressHandler = std::function<void(const std::string& stage, double done)>;
 
-/// Repairs, traces, transforms, compresses. Same bytes for any thread count. Throws Error for a scene with no triangle.
+/// Repairs, refines where asked to, traces, transforms, compresses. Same bytes for any thread count. Throws Error for a scene with no triangle.
 BakedScene bake(const Scene& scene, const BakeSettings& settings, BakeReport& report, const ProgressHandler& progress = {});
 
 /// Only the repair, welding, normals and tangents of the above (the reference renderer and the viewer see the same mesh).

@@ -12,6 +12,7 @@ std::string bakeJson(const BakeRun& run, const BakeReport& report) {
   Json errors = Json::object();
   for (const auto& [name, value] : report.error) errors[name] = value;
   const auto& repairs = report.repairs;
+  const auto& refinement = report.refinement;
   const auto& seconds = report.seconds;
   const Json json = {
       {"version", run.version},
@@ -26,6 +27,7 @@ std::string bakeJson(const BakeRun& run, const BakeReport& report) {
       {"peak_memory_bytes", run.peakMemoryBytes},
       {"seconds",
        {{"load", run.loadSeconds},
+        {"refinement", refinement.seconds},
         {"visibility", seconds.visibility},
         {"ssdf", seconds.ssdf},
         {"compression", seconds.compression},
@@ -43,12 +45,22 @@ std::string bakeJson(const BakeRun& run, const BakeReport& report) {
         {"normals_computed", repairs.normalsComputed},
         {"normals_repaired", repairs.normalsRepaired},
         {"tangents_computed", repairs.tangentsComputed}}},
+      {"refinement",
+       {{"vertices_added", refinement.verticesAdded},
+        {"triangles_added", refinement.trianglesAdded},
+        {"passes", refinement.passes},
+        {"edges_left_too_short", refinement.edgesTooShort},
+        {"edges_left_over_budget", refinement.edgesOverBudget},
+        {"worst_error_left", refinement.worstError},
+        {"rays_traced", refinement.raysTraced}}},
       {"settings",
        {{"resolution", run.settings.resolution},
         {"terms", run.settings.terms},
         {"directions", run.settings.directionCount},
         {"direction_sharpness", run.settings.directionSharpness},
         {"crease_angle_deg", static_cast<double>(run.settings.creaseAngle) * 180.0 / std::numbers::pi},
+        {"refine", run.settings.refine.error},
+        {"refine_vertices", run.settings.refine.mostVertices},
         {"seed", run.settings.seed},
         {"threads", run.settings.threads}}},
       {"warnings", run.warnings},

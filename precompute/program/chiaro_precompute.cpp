@@ -29,6 +29,8 @@ constexpr const char* kExamples = R"(Examples:
   chiaro-precompute bunny.ply -o bunny.glb --terms 96 --json bake.json
       more terms: sharper shadows of small lights, more bytes a vertex; bake.json says how far off each is
   chiaro-precompute room.gltf -o room.glb --resolution 128 --threads 8
+  chiaro-precompute room.gltf -o room.glb --refine 0.05
+      more triangles where walls and floors have too few for their shadows
   chiaro-view baked.glb
       shows the result
 
@@ -65,6 +67,10 @@ void declare(CLI::App& app, Options& options) {
   shown(app.add_option("--crease-angle-deg", options.creaseAngleDegrees,
                        "Where a file has no normals, edges bent by more than this stay sharp, 0 to 180"),
         "A");
+  shown(app.add_option("--refine", settings.refine.error,
+                       "Split triangles until interpolating what corners see is wrong by at most this share, 0 to 1; 0 is off"),
+        "E");
+  shown(app.add_option("--refine-vertices", settings.refine.mostVertices, "Most vertices the scene may have after --refine"), "N");
   shown(app.add_option("--seed", settings.seed, "Of the random choices; the same seed gives the same file"), "N");
   shown(app.add_option("--threads", settings.threads, "CPU threads, 0 is all; never changes the result"), "N");
   auto* quiet = app.add_flag("-q,--quiet", options.quiet, "Print nothing but errors");
@@ -90,6 +96,8 @@ void finish(Options& options) {
   inRange("--terms", settings.terms, 1, 256);
   inRange("--directions", settings.directionCount, 8, 64);
   inRange("--crease-angle-deg", options.creaseAngleDegrees, 0, 180);
+  inRange("--refine", static_cast<double>(settings.refine.error), 0, 1);
+  inRange("--refine-vertices", static_cast<double>(settings.refine.mostVertices), 0, 1e9);
   inRange("--threads", settings.threads, 0, 1024);
   if (settings.resolution % 4 != 0) throw usageError("--resolution", "is not a multiple of 4", "use 32, 64, 128, ...");
   if (settings.directionCount % 4 != 0) throw usageError("--directions", "is not a multiple of 4", "use 16, 32, 64, ...");
@@ -127,10 +135,19 @@ void printRepairs(const RepairReport& repairs) {
     if (count > 0) std::printf("  %zu %s\n", count, what);
 }
 
+void printRefinement(double error, const RefineReport& refinement) {
+  std::printf("refined: %zu vertices and %zu triangles added in %d passes", refinement.verticesAdded, refinement.trianglesAdded, refinement.passes);
+  if (refinement.edgesTooShort > 0) std::printf(", %zu of its edges too short to be split and still above %g", refinement.edgesTooShort, error);
+  if (refinement.edgesOverBudget > 0)
+    std::printf(", %zu edges left above %g because the vertices ran out (--refine-vertices)", refinement.edgesOverBudget, error);
+  std::printf("\n");
+}
+
 void printSummary(const Options& options, const BakeRun& run, const BakeReport& report) {
   std::printf("%s: %zu vertices, %zu triangles, %d terms, %.0f bytes a vertex, %.2f million rays, %.1f s\n", options.output.c_str(),
               report.vertices, report.triangles, report.terms, report.bytesPerVertex, static_cast<double>(report.raysTraced) * 1e-6,
               run.loadSeconds + report.seconds.total + run.writeSeconds);
+  if (options.settings.refine.error > 0.0f) printRefinement(static_cast<double>(options.settings.refine.error), report.refinement);
   // What the user made and will miss in the picture is said without being asked for; each line of it with --verbose.
   if (!run.warnings.empty() && !options.verbose)
     std::printf("%zu warning%s: %s%s\n", run.warnings.size(), run.warnings.size() == 1 ? "" : "s", run.warnings.front().c_str(),
@@ -138,8 +155,8 @@ void printSummary(const Options& options, const BakeRun& run, const BakeReport& 
   if (options.verbose) {
     std::printf("repairs:\n");
     printRepairs(report.repairs);
-    std::printf("seconds:\n  visibility %.2f\n  ssdf %.2f\n  compression %.2f\n", report.seconds.visibility, report.seconds.ssdf,
-                report.seconds.compression);
+    std::printf("seconds:\n  refinement %.2f\n  visibility %.2f\n  ssdf %.2f\n  compression %.2f\n", report.refinement.seconds,
+                report.seconds.visibility, report.seconds.ssdf, report.seconds.compression);
     std::printf("error:\n");
     for (const auto& [name, value] : report.error) std::printf("  %-46s %.5f\n", name.c_str(), value);
     std::printf("peak memory: %.0f MiB\n", static_cast<double>(run.peakMemoryBytes) / 1048576.0);

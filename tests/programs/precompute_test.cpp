@@ -79,9 +79,9 @@ TEST(Precompute, WrongUsageIsOneLineAndTwo) {
       {{"--resolution", "15"}, "--resolution"}, {{"--resolution", "512"}, "--resolution"}, {{"--resolution", "18"}, "multiple of 4"},
       {{"--resolution", "many"}, "--resolution"}, {{"--terms", "0"}, "--terms"},          {{"--terms", "257"}, "--terms"},
       {{"--directions", "9"}, "--directions"},  {{"--directions", "4"}, "--directions"},   {{"--crease-angle-deg", "nan"}, "--crease-angle-deg"},
-      {{"--crease-angle-deg", "-1"}, "--crease-angle-deg"}, {{"--threads", "-2"}, "--threads"}, {{"--frobnicate"}, "--frobnicate"},
-      {{"--quiet", "--verbose"}, "verbose"},    {{"--json", "out.glb"}, "--json"},
-      {{"--json", "./out.glb"}, "--json"}};
+      {{"--crease-angle-deg", "-1"}, "--crease-angle-deg"}, {{"--threads", "-2"}, "--threads"}, {{"--refine", "1.5"}, "--refine"},
+      {{"--refine", "-0.1"}, "--refine"}, {{"--refine", "nan"}, "--refine"}, {{"--refine-vertices", "-1"}, "--refine-vertices"}, {{"--frobnicate"}, "--frobnicate"},
+      {{"--quiet", "--verbose"}, "verbose"},    {{"--json", "out.glb"}, "--json"}, {{"--json", "./out.glb"}, "--json"}};
   for (const auto& [options, about] : cases) {
     std::vector<std::string> arguments{"builtin:sphere", "-o", "out.glb"};
     arguments.insert(arguments.end(), options.begin(), options.end());
@@ -146,6 +146,29 @@ TEST(Precompute, WritesASceneAndItsFigures) {
   EXPECT_EQ(json.at("input"), "table.obj");
   EXPECT_EQ(json.at("output"), "table.glb");
   EXPECT_TRUE(json.contains("version"));
+}
+
+TEST(Precompute, RefinesAndSaysSo) {
+  ASSERT_EQ(bakeTable("unrefined.glb", {"--json", "unrefined.json"}).code, 0);
+  const auto finished = bakeTable("refined.glb", {"--json", "refined.json", "--refine", "0.005", "--refine-vertices", "300"});
+  ASSERT_EQ(finished.code, 0) << finished.err;
+  EXPECT_NE(finished.out.find("refined: "), std::string::npos) << finished.out;
+  EXPECT_NE(finished.err.find("refinement: 100 %"), std::string::npos) << finished.err;
+  std::ifstream before("unrefined.json"), after("refined.json");
+  const auto plain = nlohmann::json::parse(before), json = nlohmann::json::parse(after);
+  EXPECT_EQ(plain.at("refinement").at("vertices_added"), 0);
+  const auto& refinement = json.at("refinement");
+  EXPECT_GT(refinement.at("vertices_added"), 0);
+  EXPECT_EQ(json.at("vertices").get<int>() - plain.at("vertices").get<int>(), refinement.at("vertices_added"));
+  EXPECT_EQ(json.at("triangles").get<int>() - plain.at("triangles").get<int>(), refinement.at("triangles_added"));
+  EXPECT_LE(json.at("vertices"), 300);
+  EXPECT_GT(refinement.at("edges_left_over_budget"), 0);
+  EXPECT_GT(refinement.at("passes"), 0);
+  EXPECT_GT(refinement.at("worst_error_left"), 0.005);
+  EXPECT_GT(refinement.at("rays_traced"), 0);
+  EXPECT_GT(json.at("seconds").at("refinement"), 0.0);
+  EXPECT_EQ(json.at("settings").at("refine_vertices"), 300);
+  EXPECT_EQ(readBakedScene("refined.glb").scene.vertexCount(), json.at("vertices"));
 }
 
 TEST(Precompute, QuietIsQuietAndVerboseSaysEverything) {
