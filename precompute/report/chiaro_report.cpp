@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstdio>
 #include <iostream>
+#include <string_view>
 
 #include "assets/file.h"
 #include "assets/program/interrupt.h"
@@ -12,6 +13,7 @@
 #include "precompute/report/report_options.h"
 #include "precompute/report/report_page.h"
 #include "precompute/report/report_tables.h"
+#include "precompute/report/visibility/visibility_report.h"
 
 namespace {
 
@@ -23,6 +25,8 @@ constexpr const char* kExamples = R"(Examples:
   chiaro-report baked.glb -o report -e sky.hdr -r 0.2 -r 0.4 -r 0.7 --samples 512
   chiaro-report baked.glb -o report --fail-under 30
       exit code 5 when a picture is further than that from the truth
+  chiaro-report visibility builtin:ornament
+      ways to store visibility against traced rays; has options of its own, see chiaro-report visibility --help
 
 Exit codes: 0 done, 1 failed, 2 wrong usage, 3 unreadable input, 4 unwritable output, 5 under --fail-under, 130 interrupted.)";
 
@@ -105,5 +109,8 @@ ExitCode report(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return chiaro::runMain("chiaro-report", [&] { return report(argc, argv); });
+  return chiaro::runMain("chiaro-report", [&] {
+    if (argc > 1 && std::string_view(argv[1]) == "visibility") return chiaro::visibilityReport(argc - 1, argv + 1);
+    return report(argc, argv);
+  });
 }

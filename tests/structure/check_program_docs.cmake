@@ -1,21 +1,25 @@
 # Fails when docs/programs.md and a program's --help do not name the same options, or --help and --version misbehave.
-# cmake -DPROGRAM=<path> -DDOCS=<docs/programs.md> -P check_program_docs.cmake
+# cmake -DPROGRAM=<path> [-DMODE=<its first argument>] -DDOCS=<docs/programs.md> -P check_program_docs.cmake
 cmake_minimum_required(VERSION 3.25)
 
 cmake_path(GET PROGRAM FILENAME name)
-execute_process(COMMAND "${PROGRAM}" --help OUTPUT_VARIABLE help ERROR_VARIABLE noise RESULT_VARIABLE code)
+execute_process(COMMAND "${PROGRAM}" ${MODE} --help OUTPUT_VARIABLE help ERROR_VARIABLE noise RESULT_VARIABLE code)
 if(NOT code STREQUAL "0" OR help STREQUAL "" OR NOT noise STREQUAL "")
   message(FATAL_ERROR "${name} --help: exit ${code}, expected 0 with the text on standard output alone:\n${noise}")
 endif()
-execute_process(COMMAND "${PROGRAM}" --no-such-option OUTPUT_QUIET ERROR_VARIABLE noise RESULT_VARIABLE code)
+execute_process(COMMAND "${PROGRAM}" ${MODE} --no-such-option OUTPUT_QUIET ERROR_VARIABLE noise RESULT_VARIABLE code)
 if(NOT code STREQUAL "2" OR NOT noise MATCHES "^${name}: [^\n]*\n$")
   message(FATAL_ERROR "${name} --no-such-option: exit ${code}, expected 2 and one line that starts with '${name}: ', not:\n${noise}")
 endif()
 
+set(section_name "${name}")
+if(MODE)
+  string(APPEND section_name " ${MODE}")
+endif()
 file(READ "${DOCS}" docs)
-string(FIND "${docs}" "\n## ${name}\n" from)
+string(FIND "${docs}" "\n## ${section_name}\n" from)
 if(from EQUAL -1)
-  message(FATAL_ERROR "docs/programs.md has no section '## ${name}'")
+  message(FATAL_ERROR "docs/programs.md has no section '## ${section_name}'")
 endif()
 math(EXPR from "${from} + 4")
 string(SUBSTRING "${docs}" ${from} -1 section)

@@ -1,0 +1,15 @@
+#pragma once
+/// The transfer of a baked file, as the runtime reads it for sharp lobes.
+
+#include <memory>
+
+#include "assets/transfer/transfer.h"
+#include "precompute/report/visibility/visibility_method.h"
+
+namespace chiaro {
+
+/// `transfer` must outlive the method, and VisibilityInput::viewpoints must be those of its scene. The visible fractions of fixed lobes
+/// are neither used nor counted.
+std::unique_ptr<VisibilityMethod> makeTransferMethod(const Transfer& transfer);
+
+}  // namespace chiaro

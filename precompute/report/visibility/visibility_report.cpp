@@ -1,0 +1,124 @@
+#include "precompute/report/visibility/visibility_report.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <iostream>
+#include <optional>
+
+#include "assets/builtin/builtin_scene.h"
+#include "assets/file.h"
+#include "assets/program/interrupt.h"
+#include "assets/program/progress_bar.h"
+#include "assets/scene/load_scene.h"
+#include "assets/transfer/transfer.h"
+#include "assets/transfer/transfer_format.h"
+#include "precompute/report/visibility/ground.h"
+#include "precompute/report/visibility/transfer_method.h"
+#include "precompute/report/visibility/visibility_options.h"
+#include "precompute/report/visibility/visibility_tables.h"
+
+namespace chiaro {
+namespace {
+
+constexpr const char* kExamples = R"(Examples:
+  chiaro-report visibility builtin:ornament
+  chiaro-report visibility bunny.ply --ground -o signal
+  chiaro-report visibility baked.glb --json signal.json
+      the stored transfer beside the others
+
+Bytes are those of weights, indices, means and bases together, divided by the vertices.
+Exit codes: 0 done, 1 failed, 2 wrong usage, 3 unreadable input, 4 unwritable output, 130 interrupted.)";
+
+bool isBaked(const std::string& path) {
+  if (isBuiltinName(path) || std::filesystem::path(path).extension() != ".glb") return false;
+  const auto bytes = readFile(path);
+  const std::string_view name = kTransferExtension;
+  return std::search(bytes.begin(), bytes.end(), name.begin(), name.end()) != bytes.end();
+}
+
+struct Input {
+  Scene scene;
+  std::optional<Transfer> transfer;
+};
+
+Input load(const std::string& name, bool ground) {
+  if (isBaked(name)) {
+    if (ground) throw usageError("--ground", name + " is baked already", "give the scene that it was baked from");
+    auto baked = readBakedScene(name);
+    return {std::move(baked.scene), std::move(baked.transfer)};
+  }
+  Scene scene = isBuiltinName(name) ? builtinScene(name) : loadScene(name);
+  if (ground) addGround(scene);
+  RepairReport repairs;
+  return {prepareScene(scene, BakeSettings{}.creaseAngle, repairs), std::nullopt};
+}
+
+SceneComparison compareScene(const std::string& name, const VisibilityOptions& options, ProgressBar& bar) {
+  const auto start = std::chrono::steady_clock::now();
+  const Input input = load(name, options.ground);
+  const MethodMaker methods = [&](const VisibilityInput& from) {
+    auto all = baselineMethods(from);
+    if (input.transfer) all.insert(all.begin(), makeTransferMethod(*input.transfer));
+    return all;
+  };
+  SceneComparison result;
+  result.scene = name;
+  result.ground = options.ground;
+  try {
+    result.comparison = compareVisibility(input.scene, methods, options.settings, [&](const std::string& stage, double done) {
+      throwIfInterrupted();
+      bar.update(stage, done);
+    });
+  } catch (const Error& error) {
+    if (error.where() != "scene") throw;
+    throw Error(error.code(), name, std::string(error.what()).substr(error.where().size() + 2), "");
+  }
+  bar.clear();
+  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return result;
+}
+
+}  // namespace
+
+ExitCode visibilityReport(int argc, const char* const* argv) {
+  CLI::App app(
+      "Compares ways to store visibility with traced rays: the visible fraction of lobes, by sharpness, on counted bytes.",
+      "chiaro-report visibility");
+  app.footer(kExamples);
+  app.set_version_flag("--version", "chiaro-report " CHIARO_VERSION);
+  VisibilityOptions options;
+  declareVisibilityOptions(app, options);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& asked) {  // --help, --version
+    app.exit(asked, std::cout, std::cerr);
+    return ExitCode::done;
+  } catch (const CLI::ParseError& error) {
+    throw usageError("command line", error.what(), "see chiaro-report visibility --help");
+  }
+  finishVisibilityOptions(options);
+  catchInterrupts();
+
+  ProgressBar bar(progressStyle(options.quiet));
+  std::vector<SceneComparison> scenes;
+  std::string tables;
+  for (const auto& name : options.scenes) {
+    scenes.push_back(compareScene(name, options, bar));
+    const std::string table = visibilityTable(scenes.back());
+    if (!options.quiet) std::printf("%s%s", tables.empty() ? "" : "\n", table.c_str());
+    std::fflush(stdout);
+    tables += (tables.empty() ? "" : "\n") + table;
+  }
+  const std::string json = visibilityJson(scenes, options.settings, CHIARO_VERSION);
+  if (!options.output.empty()) {
+    writeFileAtomically(options.output / "visibility.txt", tables);
+    writeFileAtomically(options.output / "visibility.json", json);
+    writeFileAtomically(options.output / "visibility.csv", visibilityCsv(scenes));
+  }
+  if (!options.json.empty()) writeFileAtomically(options.json, json);
+  return ExitCode::done;
+}
+
+}  // namespace chiaro
