@@ -11,19 +11,24 @@ namespace chiaro {
 namespace {
 
 /// Scans are often wound inside out (the bunny is), and a mesh file has no other say on which side is the front. The volume that the
-/// triangles enclose about their middle is negative then; a flat or balanced mesh, whose cones cancel, is left as it is.
+/// triangles enclose about their middle is negative then. Only a mesh that is closed but for a few holes is judged so: of a closed surface
+/// the area vectors cancel, of a floor with things on it they do not, and its volume says nothing.
 void turnInsideOut(Primitive& primitive, RepairReport& report) {
   if (primitive.positions.empty()) return;
   glm::dvec3 middle(0.0);
   for (const auto& position : primitive.positions) middle += glm::dvec3(position) / static_cast<double>(primitive.positions.size());
   const auto corner = [&](std::size_t i) { return glm::dvec3(primitive.positions[primitive.indices[i]]) - middle; };
-  double volume = 0.0, magnitude = 0.0;
+  double volume = 0.0, magnitude = 0.0, area = 0.0;
+  glm::dvec3 areaVector(0.0);
   for (std::size_t i = 0; i + 2 < primitive.indices.size(); i += 3) {
     const double cone = glm::dot(corner(i), glm::cross(corner(i + 1), corner(i + 2)));
     volume += cone;
     magnitude += std::abs(cone);
+    const auto normal = glm::cross(corner(i + 1) - corner(i), corner(i + 2) - corner(i));
+    areaVector += normal;
+    area += glm::length(normal);
   }
-  if (!(volume < -0.2 * magnitude)) return;
+  if (!(volume < -0.2 * magnitude && glm::length(areaVector) < 0.1 * area)) return;
   for (std::size_t i = 0; i + 2 < primitive.indices.size(); i += 3) std::swap(primitive.indices[i + 1], primitive.indices[i + 2]);
   report.trianglesTurned += primitive.triangleCount();
 }
