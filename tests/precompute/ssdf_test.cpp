@@ -36,8 +36,8 @@ Signal signalOf(const OctahedralGrid& grid, glm::vec3 normal, bool doubleSided, 
     if (sees(grid.direction(t)))
       signal.visible[t / 16] = static_cast<std::uint16_t>(signal.visible[t / 16] | 1u << t % 16);
   if (!doubleSided) mirrorBelowHorizon(grid, signal.normal, signal.above, signal.visible);
-  SsdfTransform transform(grid);
-  transform(signal.normal, signal.cosine, signal.above, signal.visible, doubleSided, signal.ssdf.data());
+  SsdfTransform transform(grid, grid);
+  transform(signal.normal, doubleSided, signal.above, signal.visible, signal.above, signal.visible, signal.ssdf.data());
   return signal;
 }
 
@@ -90,8 +90,8 @@ TEST(Ssdf, WithoutAnEdgeItIsHalfPi) {
   const glm::vec3 n = glm::normalize(glm::vec3(1, 2, 3));
   Signal signal(grid, n, false);
   signal.visible = signal.above;
-  SsdfTransform transform(grid);
-  transform(n, signal.cosine, signal.above, signal.visible, false, signal.ssdf.data());
+  SsdfTransform transform(grid, grid);
+  transform(n, false, signal.above, signal.visible, signal.above, signal.visible, signal.ssdf.data());
   for (const float s : signal.ssdf) EXPECT_EQ(std::abs(s), kMaxDistance);
 }
 
