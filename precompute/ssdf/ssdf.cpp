@@ -9,8 +9,8 @@
 namespace chiaro {
 namespace {
 
-/// A group with so few points left goes on to the texels: filtering costs more than it saves.
-constexpr std::size_t kFew = 8;
+// With so few points left filtering costs more than it saves: those of a group of tiles, those of one tile, those left to compare at corners.
+constexpr std::size_t kFew = 16, kFewOfTile = 32, kFewToCompare = 32;
 
 glm::vec3 fold(glm::vec3 w, glm::vec3 n) {
   const float cosine = glm::dot(w, n);
@@ -132,16 +132,45 @@ void nearestAngles(const AlignedFloats& px, const AlignedFloats& py, const Align
 
 /// Directions of one tile, those below the horizon of `normal` mirrored in it; a bit for each of those.
 unsigned foldTile(const float* x, const float* y, const float* z, glm::vec3 normal, float* qx, float* qy, float* qz) {
+  alignas(64) float cosine[16];
+  runVectorised([&]<typename Vector>() CHIARO_INLINE {
+    const glm::vec3 n = normal;
+    for (int i = 0; i < 16; i += kWidth<Vector>) {
+      const Vector wx = loadVector<Vector>(x + i), wy = loadVector<Vector>(y + i), wz = loadVector<Vector>(z + i);
+      const Vector dot = wx * n.x + wy * n.y + wz * n.z;
+      const Vector lift = 2.0f * (dot < 0.0f ? dot : Vector{});
+      storeVector(cosine + i, dot);
+      storeVector(qx + i, wx - lift * n.x);
+      storeVector(qy + i, wy - lift * n.y);
+      storeVector(qz + i, wz - lift * n.z);
+    }
+  });
   unsigned below = 0;
-  for (int lane = 0; lane < 16; ++lane) {
-    const float cosine = x[lane] * normal.x + y[lane] * normal.y + z[lane] * normal.z;
-    const float lift = 2.0f * (cosine < 0.0f ? cosine : 0.0f);
-    qx[lane] = x[lane] - lift * normal.x;
-    qy[lane] = y[lane] - lift * normal.y;
-    qz[lane] = z[lane] - lift * normal.z;
-    below |= static_cast<unsigned>(!(cosine > 0.0f)) << lane;
-  }
+  for (unsigned lane = 0; lane < 16; ++lane) below |= static_cast<unsigned>(!(cosine[lane] > 0.0f)) << lane;
   return below;
+}
+
+/// OctahedralGrid::texelAt of sixteen directions.
+void texelsAt(const OctahedralGrid& grid, const float* x, const float* y, const float* z, std::uint32_t* texels) {
+  alignas(64) float u[16], v[16];
+  const auto resolution = static_cast<float>(grid.resolution);
+  runVectorised([&]<typename Vector>() CHIARO_INLINE {
+    const float size = resolution;
+    for (int i = 0; i < 16; i += kWidth<Vector>) {
+      const Vector wx = loadVector<Vector>(x + i), wy = loadVector<Vector>(y + i), wz = loadVector<Vector>(z + i);
+      const Vector ax = wx < 0.0f ? -wx : wx, ay = wy < 0.0f ? -wy : wy, az = wz < 0.0f ? -wz : wz;
+      const Vector sum = ax + ay + az, zero = {};
+      const Vector borderX = 0.5f * ((wz < 0.0f ? ay : ay + az) / sum), borderY = 0.5f * ((wz < 0.0f ? ax : ax + az) / sum);
+      storeVector(u + i, (wx < zero ? borderX : 1.0f - borderX) * size);
+      storeVector(v + i, (wy < zero ? borderY : 1.0f - borderY) * size);
+    }
+  });
+  const auto last = static_cast<std::uint32_t>(grid.resolution - 1), tilesPerRow = static_cast<std::uint32_t>(grid.resolution / 4);
+  for (int lane = 0; lane < 16; ++lane) {
+    const auto column = std::min(static_cast<std::uint32_t>(static_cast<int>(u[lane])), last),
+               row = std::min(static_cast<std::uint32_t>(static_cast<int>(v[lane])), last);
+    texels[lane] = 16 * (row / 4 * tilesPerRow + column / 4) + 4 * (row % 4) + column % 4;
+  }
 }
 
 /// Repeats the last point up to a multiple of sixteen, so that loops need no remainder.
@@ -349,17 +378,21 @@ void SsdfTransform::visitTile(const Group& group, const Points& points, bool fol
     const auto mirrored = [&](unsigned lane) {
       return texelBit(signal.visible.data(), nearestAbove(storage_, signal.above, {qx[lane], qy[lane], qz[lane]}));
     };
+    std::uint32_t home[16];
     const float nearest = *std::min_element(angle, angle + 16);
     if (below == 0xffffu && nearest > 2.0f * group.radius + slack_) {
       seen = mirrored(0) ? 0xffffu : 0u;
     } else {
+      texelsAt(storage_, qx, qy, qz, home);
       for (unsigned left = below; left != 0; left &= left - 1) {
         const auto lane = static_cast<unsigned>(std::countr_zero(left));
-        seen = mirrored(lane) ? seen | 1u << lane : seen & ~(1u << lane);
+        const bool sees = texelBit(signal.above.data(), home[lane]) ? texelBit(signal.visible.data(), home[lane]) : mirrored(lane);
+        seen = sees ? seen | 1u << lane : seen & ~(1u << lane);
       }
     }
   }
-  for (std::size_t lane = 0; lane < 16; ++lane) angle[lane] = (seen >> lane & 1) != 0 ? angle[lane] : -angle[lane];
+  for (unsigned lane = 0; lane < 16; ++lane)
+    angle[lane] = std::bit_cast<float>(std::bit_cast<std::uint32_t>(angle[lane]) | (~seen >> lane & 1u) << 31);
   for (std::size_t row = 0; row < 4; ++row) std::copy_n(angle + 4 * row, 4, signal.distances + storage_.rowMajor[first + 4 * row]);
 }
 
@@ -367,7 +400,7 @@ void SsdfTransform::visit(const Group& group, const Points& from, std::size_t de
   const float height = signal.doubleSided ? 2.0f : glm::dot(group.center, signal.normal);
   const bool folded = height <= group.radius + 1e-5f, straddles = folded && height >= -group.radius - 1e-5f;
   const Points* points = &from;
-  if (from.count > kFew && group.radius < 0.7f) {
+  if (from.count > (group.childCount == 0 ? kFewOfTile : kFew) && group.radius < 0.7f) {
     auto& kept = kept_[depth];
     const float reach = clampChord_ + group.radius;
     keepNear(from, signal.folded(group.center), group.radius, reach, kept);
@@ -378,7 +411,7 @@ void SsdfTransform::visit(const Group& group, const Points& from, std::size_t de
       }
     } else {
       points = &kept;
-      if (kept.count > kFew && group.convex && !straddles) {
+      if (group.childCount != 0 && kept.count > kFewToCompare && group.convex && !straddles) {
         glm::vec3 corners[4];
         for (int c = 0; c < 4; ++c) corners[c] = folded ? group.corner[c] - 2.0f * glm::dot(group.corner[c], signal.normal) * signal.normal : group.corner[c];
         keepUndominated(kept, corners);

@@ -14,14 +14,16 @@ constexpr int kOwnPacket = 12;
 
 constexpr Board bitOf(std::size_t texel) { return Board{1} << texel % 64; }
 
-/// The texel `steps` levels finer that has the centre of `texel` as its upper left corner. Texels: 64 board + bit.
-std::size_t centreTexel(std::size_t texel, std::size_t steps) {
-  const auto child = [](std::size_t of, std::size_t dx, std::size_t dy) {
-    const auto lane = of % 16, column = 2 * (lane % 4) + dx, row = 2 * (lane / 4) + dy;
+/// Of the four texels `steps` levels finer that meet at the centre of `texel`: the last is right of it and below, which is
+/// what OctahedralGrid::texelAt takes the centre for. Texels: 64 board + bit.
+std::size_t besideCentre(std::size_t texel, std::size_t steps, std::size_t corner) {
+  const auto dx = corner % 2, dy = corner / 2;
+  const auto child = [](std::size_t of, std::size_t x, std::size_t y) {
+    const auto lane = of % 16, column = 2 * (lane % 4) + x, row = 2 * (lane / 4) + y;
     return 64 * (of / 16) + 32 * (row / 4) + 16 * (column / 4) + 4 * (row % 4) + column % 4;
   };
-  texel = child(texel, 1, 1);
-  for (std::size_t step = 1; step < steps; ++step) texel = child(texel, 0, 0);
+  texel = child(texel, dx, dy);
+  for (std::size_t step = 1; step < steps; ++step) texel = child(texel, 1 - dx, 1 - dy);
   return texel;
 }
 
@@ -223,39 +225,54 @@ void AdaptiveVisibility::at(int resolution, TexelBits& above, TexelBits& visible
   const auto& finest = maps_.back();
   found->toTexels(map.side, above);
   auto bits = map.visible;
-  // A texel's centre is a corner of finer ones: of the four about it the one right and down, which is what texelAt() takes it for.
   const auto steps = maps_.size() - 1 - level;
   for (std::size_t b = 0; steps > 0 && b < bits.size(); ++b) {
-    const auto known = bothSides_ ? ~Board{0} : map.side[b];
-    for (auto left = known & ~map.traced[b]; left != 0; left &= left - 1) {
+    const auto asked = bothSides_ ? ~Board{0} : map.side[b];
+    // Of one kind throughout, at both resolutions: most boards.
+    Board any = bits[b] & asked, all = bits[b] | ~asked;
+    for (std::size_t f = b << 2 * steps; f < (b + 1) << 2 * steps; ++f) {
+      any |= finest.visible[f];
+      all &= finest.visible[f] | (bothSides_ ? Board{0} : ~finest.side[f]);
+    }
+    if (any == 0 || all == ~Board{0}) continue;
+    for (auto left = asked; left != 0; left &= left - 1) {
       const auto bit = static_cast<std::size_t>(std::countr_zero(left));
-      const auto fine = centreTexel(64 * b + bit, steps);
-      if (!bothSides_ && (finest.side[fine / 64] & bitOf(fine)) == 0) continue;  // below the horizon: no better than what was inherited
-      const bool sees = (finest.visible[fine / 64] & bitOf(fine)) != 0;
-      bits[b] = sees ? bits[b] | Board{1} << bit : bits[b] & ~(Board{1} << bit);
+      const bool sees = (bits[b] >> bit & 1) != 0;
+      bool agrees = false, finer = sees;
+      for (std::size_t corner = 0; corner < 4; ++corner) {
+        const auto fine = besideCentre(64 * b + bit, steps, corner);
+        if (!bothSides_ && (finest.side[fine / 64] & bitOf(fine)) == 0) continue;
+        finer = (finest.visible[fine / 64] & bitOf(fine)) != 0;
+        agrees = agrees || finer == sees;
+      }
+      // A ray through the centre decides, unless nothing of what it met is left at the sampling resolution.
+      if (agrees && (map.traced[b] >> bit & 1) != 0) continue;
+      bits[b] = finer ? bits[b] | Board{1} << bit : bits[b] & ~(Board{1} << bit);
     }
   }
   found->toTexels(bits, visible);
 }
 
 double coveringRadius(int resolution) {
-  // Within a texel the farthest point from its own centre is a corner, and no other centre is nearer to it than the nearest of those
-  // that meet there: so the answer is the worst corner. By symmetry those of one quadrant do.
+  // The centres of the four texels that meet at a corner of the map's grid make two triangles, split along the shorter diagonal; these
+  // cover the sphere, and no point of a triangle is farther from all its vertices than the centre of its circle. One quadrant stands for all.
   const int half = resolution / 2;
   double worst = 0.0;
+  const auto center = [&](int i, int j) { return lobe64::octahedralTexelDirection(lobe64::octahedralWrapTexel({i, j}, resolution), resolution); };
+  const auto circle = [&](const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+    const double twiceArea = glm::length(glm::cross(b - a, c - a));
+    if (twiceArea < 1e-12) return;  // at the middle of a border side two texels meet twice
+    worst = std::max(worst, glm::distance(a, b) * glm::distance(b, c) * glm::distance(c, a) / (2.0 * twiceArea));
+  };
   for (int j = half; j <= resolution; ++j) {
     for (int i = half; i <= resolution; ++i) {
-      const auto corner = lobe64::octahedralDecode(lobe64::Vec2(i, j) / static_cast<double>(resolution));
-      double chord = 2.0;
-      for (int dy = -2; dy <= 1; ++dy)
-        for (int dx = -2; dx <= 1; ++dx) {
-          const auto texel = lobe64::octahedralWrapTexel({i + dx, j + dy}, resolution);
-          chord = std::min(chord, glm::distance(corner, lobe64::octahedralTexelDirection(texel, resolution)));
-        }
-      worst = std::max(worst, 2.0 * std::asin(0.5 * chord));
+      const auto a = center(i - 1, j - 1), b = center(i, j - 1), c = center(i, j), d = center(i - 1, j);
+      const bool ac = glm::distance(a, c) < glm::distance(b, d);
+      circle(a, ac ? c : b, d);
+      circle(ac ? a : d, b, c);
     }
   }
-  return worst;
+  return std::asin(worst);
 }
 
 int conservativeCoarse(double angle) {

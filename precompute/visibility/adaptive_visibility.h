@@ -44,8 +44,8 @@ class AdaptiveVisibility {
   const TexelBits& above() const { return above_; }
   const TexelBits& visible() const { return visible_; }
 
-  /// The same at a level's resolution: where a ray went through a texel's centre what it met, elsewhere (nothing changes
-  /// nearby) the sampling texel that holds it. Throws std::invalid_argument if `resolution` is no level.
+  /// The same at a level's resolution: where a ray went through a texel's centre what it met, elsewhere (nothing changes nearby, or the
+  /// level was skipped) the sampling texel that holds it. Throws std::invalid_argument if `resolution` is no level.
   void at(int resolution, TexelBits& above, TexelBits& visible) const;
 
   /// Traced at the sampling resolution itself: #boards of its level.
