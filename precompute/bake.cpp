@@ -52,7 +52,7 @@ struct Traced {
 
 /// A thread's working memory.
 struct Scratch {
-  explicit Scratch(const OctahedralGrid& grid) : cosine(grid.texelCount), transform(grid), distances(grid.texelCount) {}
+  explicit Scratch(const OctahedralGrid& grid) : cosine(grid.texelCount), transform(grid, grid), distances(grid.texelCount) {}
   AlignedFloats cosine;
   TexelBits above, visible;
   SsdfTransform transform;
@@ -86,7 +86,8 @@ Traced traceScene(const RayScene& rays, const OctahedralGrid& grid, const std::v
       for (std::size_t j = 0; j < directionCount; ++j)
         traced.fractions[v * directionCount + j] = static_cast<std::uint8_t>(std::lrint(255.0f * fractions[j]));
       const auto ssdfStart = Clock::now();
-      scratch.transform(viewpoint.normal, scratch.cosine, scratch.above, scratch.visible, viewpoint.doubleSided, scratch.distances.data());
+      scratch.transform(viewpoint.normal, viewpoint.doubleSided, scratch.above, scratch.visible, scratch.above, scratch.visible,
+                        scratch.distances.data());
       traced.ssdf.setRow(v, scratch.distances.data());
       visibilitySeconds += std::chrono::duration<double>(ssdfStart - traceStart).count();
       ssdfSeconds += secondsSince(ssdfStart);

@@ -18,6 +18,12 @@ void lap(Clock::time_point& from, double& sum) {
   from = now;
 }
 
+/// The map that is traced everywhere: the stored one, or one of about 64 texels a side below it.
+int coarseBelow(int resolution) {
+  while (resolution > 64 && resolution % 16 == 0) resolution /= 2;
+  return resolution;
+}
+
 }  // namespace
 
 void TraceTally::operator+=(const TraceTally& other) {
@@ -33,16 +39,18 @@ TransferRows::TransferRows(const RayScene& rays, const std::vector<Viewpoint>& v
       layout_(layout),
       stored_(layout.resolution),
       sampled_(layout.samplingResolution),
+      sphere_(coarseBelow(layout.resolution), layout.samplingResolution),
       prefilter_(sampled_, layout.levels),
       fractions_(stored_, layout.directions, layout.directionSharpness) {}
 
 TraceTally TransferRows::operator()(std::span<const std::uint32_t> vertices, float* rows, std::size_t stride) const {
   constexpr std::size_t kBatch = PrefilteredVisibility::kBatch;
   TraceTally tally;
-  AlignedFloats cosine(stored_.texelCount), sampledCosine(sampled_.texelCount);
+  AdaptiveVisibility adaptive(rays_, sphere_);
+  AlignedFloats cosine(stored_.texelCount);
   TexelBits above[kBatch], visible[kBatch], storedAbove, storedVisible;
   Viewpoint viewpoints[kBatch];
-  SsdfTransform transform(stored_);
+  SsdfTransform transform(sampled_, stored_, layout_.clamp);
   auto scratch = prefilter_.scratch();
   for (std::size_t first = 0; first < vertices.size(); first += kBatch) {
     const auto count = std::min(kBatch, vertices.size() - first);
@@ -50,14 +58,14 @@ TraceTally TransferRows::operator()(std::span<const std::uint32_t> vertices, flo
       float* row = rows + (first + i) * stride;
       const auto& viewpoint = viewpoints[i] = viewpoints_[vertices[first + i]];
       auto time = Clock::now();
-      texelsAbove(stored_, viewpoint.normal, cosine, storedAbove);
-      tally.rays += traceVisibility(rays_, stored_, viewpoint, storedAbove, storedVisible);
-      above[i] = storedAbove;
-      visible[i] = storedVisible;
+      tally.rays += adaptive(viewpoint);
+      above[i] = adaptive.above();
+      visible[i] = adaptive.visible();
+      adaptive.at(layout_.resolution, storedAbove, storedVisible);
       lap(time, tally.visibilitySeconds);
-      transform(viewpoint.normal, cosine, storedAbove, storedVisible, viewpoint.doubleSided, row);
-      for (std::size_t t = 0; t < stored_.texelCount; ++t) row[t] = std::clamp(row[t], -layout_.clamp, layout_.clamp);
+      transform(viewpoint.normal, viewpoint.doubleSided, above[i], visible[i], storedAbove, storedVisible, row);
       lap(time, tally.ssdfSeconds);
+      texelsAbove(stored_, viewpoint.normal, cosine, storedAbove);
       fractions_(viewpoint, cosine, storedAbove, storedVisible, row + texels() + levelTexels());
       lap(time, tally.filterSeconds);
     }

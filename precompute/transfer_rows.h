@@ -8,6 +8,7 @@
 
 #include "assets/transfer/clustered.h"
 #include "precompute/embree/ray_scene.h"
+#include "precompute/visibility/adaptive_visibility.h"
 #include "precompute/visibility/fractions.h"
 #include "precompute/visibility/octahedral_grid.h"
 #include "precompute/visibility/prefilter.h"
@@ -49,6 +50,7 @@ class TransferRows {
   const std::vector<Viewpoint>& viewpoints_;
   Layout layout_;
   OctahedralGrid stored_, sampled_;
+  AdaptiveSphere sphere_;
   PrefilteredVisibility prefilter_;
   VisibleFractions fractions_;
 };

@@ -208,6 +208,44 @@ std::uint32_t RayScene::occluded16(glm::vec3 origin, const float* x, const float
   return result & active;
 }
 
+struct OcclusionPacket::Impl {
+  RTCScene scene;
+  bool nothing = false;  ///< the origin is not finite
+  alignas(64) RTCRay16 rays;
+  alignas(64) int valid[16];
+};
+
+OcclusionPacket::OcclusionPacket(const RayScene& rays) : impl_(std::make_unique<Impl>()) {
+  impl_->scene = rays.impl_->occluders();
+  impl_->rays = {};
+  std::ranges::fill(impl_->rays.mask, ~0u);
+}
+
+OcclusionPacket::~OcclusionPacket() = default;
+OcclusionPacket::OcclusionPacket(OcclusionPacket&&) noexcept = default;
+OcclusionPacket& OcclusionPacket::operator=(OcclusionPacket&&) noexcept = default;
+
+void OcclusionPacket::setOrigin(glm::vec3 origin) {
+  impl_->nothing = !isFinite(origin);
+  std::ranges::fill(impl_->rays.org_x, origin.x);
+  std::ranges::fill(impl_->rays.org_y, origin.y);
+  std::ranges::fill(impl_->rays.org_z, origin.z);
+}
+
+std::uint32_t OcclusionPacket::operator()(const float* x, const float* y, const float* z, std::uint32_t active) {
+  if (impl_->nothing) return 0;
+  auto& rays = impl_->rays;
+  std::memcpy(rays.dir_x, x, sizeof(rays.dir_x));
+  std::memcpy(rays.dir_y, y, sizeof(rays.dir_y));
+  std::memcpy(rays.dir_z, z, sizeof(rays.dir_z));
+  std::ranges::fill(rays.tfar, kInfinity);  // Embree changes nothing else
+  for (int i = 0; i < 16; ++i) impl_->valid[i] = -static_cast<int>(active >> i & 1u);
+  embree::occluded16(impl_->valid, impl_->scene, rays);
+  std::uint32_t result = 0;
+  for (int i = 0; i < 16; ++i) result |= (rays.tfar[i] == -kInfinity ? 1u : 0u) << i;
+  return result & active;
+}
+
 float RayScene::surfaceOffset(glm::vec3 position) const {
   // Positions are rounded to half a float epsilon of their largest coordinate, interpolated ones to a few; Embree's robust
   // intersection is good to a few epsilons of the distances involved, which the diagonal bounds.

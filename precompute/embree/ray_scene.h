@@ -43,6 +43,26 @@ class RayScene {
   float surfaceOffset(glm::vec3 position) const;
 
  private:
+  friend class OcclusionPacket;
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Packets of rays that share an origin and have no end: what they have in common is written once. For one thread.
+class OcclusionPacket {
+ public:
+  explicit OcclusionPacket(const RayScene& rays);
+  ~OcclusionPacket();
+  OcclusionPacket(OcclusionPacket&&) noexcept;
+  OcclusionPacket& operator=(OcclusionPacket&&) noexcept;
+
+  /// Of the packets to come. Nothing occludes from one that is not finite.
+  void setOrigin(glm::vec3 origin);
+
+  /// RayScene::occluded16 of finite directions.
+  std::uint32_t operator()(const float* x, const float* y, const float* z, std::uint32_t active);
+
+ private:
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };

@@ -62,6 +62,9 @@ void declare(CLI::App& app, Options& options) {
   shown(app.add_option("--weight-bits", settings.weightBits, "Bits of a weight, 8 or 16"), "N");
   shown(app.add_option("--function-bits", settings.functionBits, "Bits of a function's values: 16, 8, 4, or 0 for 8 and 4 by what each is worth"), "N");
   shown(app.add_option("--resolution", settings.resolution, "Texels a side of the octahedral sphere, 16 to 256, a multiple of 4"), "N");
+  shown(app.add_option("--sample-resolution", settings.samplingResolution,
+                       "Texels a side that are traced where visibility changes: --resolution times a power of two; 0 is the same"),
+        "N");
   shown(app.add_option("--terms", settings.terms, "Principal components kept, 1 to 256"), "K");
   shown(app.add_option("--directions", settings.directionCount, "Broad lobes a vertex, 8 to 64, a multiple of 4"), "N");
   shown(app.add_option("--crease-angle-deg", options.creaseAngleDegrees,

@@ -1,6 +1,7 @@
 #include "precompute/ssdf/ssdf.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "precompute/simd.h"
@@ -8,7 +9,8 @@
 namespace chiaro {
 namespace {
 
-constexpr float kMaxChord = 1.41421356f;  ///< of pi/2
+// With so few points left filtering costs more than it saves: those of a group of tiles, those of one tile, those left to compare at corners.
+constexpr std::size_t kFew = 16, kFewOfTile = 40, kFewToCompare = 20;
 
 glm::vec3 fold(glm::vec3 w, glm::vec3 n) {
   const float cosine = glm::dot(w, n);
@@ -38,10 +40,61 @@ float chordsTo(const AlignedFloats& px, const AlignedFloats& py, const AlignedFl
   return smallest;
 }
 
-/// angle[i] = 2 asin(chord / 2), at most pi/2, of the nearest of `count` points to each of sixteen directions. The arcsine is its odd
+/// The index of the first of `count` points that is nearest to `from`; chord2 gets the squared chords to all (rounded up to 16).
+std::size_t nearestTo(const AlignedFloats& px, const AlignedFloats& py, const AlignedFloats& pz, std::size_t pointCount, glm::vec3 from,
+                      float* chords) {
+  std::size_t nearest = 0;
+  runVectorised([&]<typename Vector>() CHIARO_INLINE {
+    const float *x = px.data(), *y = py.data(), *z = pz.data();
+    float* chord2 = chords;
+    const std::size_t count = (pointCount + 15) / 16 * 16;
+    const glm::vec3 center = from;
+    Vector least = Vector{} + 16.0f, at = {}, index = {};
+    for (int lane = 0; lane < kWidth<Vector>; ++lane) index[lane] = static_cast<float>(lane);
+    for (std::size_t i = 0; i < count; i += kWidth<Vector>) {
+      const Vector dx = loadVector<Vector>(x + i) - center.x, dy = loadVector<Vector>(y + i) - center.y,
+                   dz = loadVector<Vector>(z + i) - center.z;
+      const Vector c = dx * dx + dy * dy + dz * dz;
+      storeVector(chord2 + i, c);
+      at = c < least ? index : at;
+      least = c < least ? c : least;
+      index += static_cast<float>(kWidth<Vector>);
+    }
+    // Whatever the width: of those as near the first.
+    float best = least[0], first = at[0];
+    for (int lane = 1; lane < kWidth<Vector>; ++lane) {
+      if (least[lane] > best || (!(least[lane] < best) && at[lane] > first)) continue;
+      best = least[lane];
+      first = at[lane];
+    }
+    nearest = static_cast<std::size_t>(first);
+  });
+  return nearest;
+}
+
+/// chord2: of each point to four corners, one corner after the other. Its first part becomes 0 for the points that are farther from all
+/// corners than one of four rivals (rival[k][c]: of rival k to corner c), else 1.
+void markUndominated(float* chord2, std::size_t pointStride, const float (&rivals)[4][4]) {
+  runVectorised([&]<typename Vector>() CHIARO_INLINE {
+    const std::size_t stride = pointStride;
+    float* chords = chord2;
+    float rival[4][4];
+    for (int k = 0; k < 4; ++k)
+      for (int c = 0; c < 4; ++c) rival[k][c] = rivals[k][c];
+    for (std::size_t i = 0; i < stride; i += kWidth<Vector>) {
+      const Vector c0 = loadVector<Vector>(chords + i), c1 = loadVector<Vector>(chords + stride + i),
+                   c2 = loadVector<Vector>(chords + 2 * stride + i), c3 = loadVector<Vector>(chords + 3 * stride + i);
+      auto keep = (c0 <= rival[0][0]) | (c1 <= rival[0][1]) | (c2 <= rival[0][2]) | (c3 <= rival[0][3]);
+      for (int k = 1; k < 4; ++k) keep &= (c0 <= rival[k][0]) | (c1 <= rival[k][1]) | (c2 <= rival[k][2]) | (c3 <= rival[k][3]);
+      storeVector(chords + i, keep ? Vector{} + 1.0f : Vector{});
+    }
+  });
+}
+
+/// angle[i] = 2 asin(chord / 2), at most `clamp`, of the nearest of `count` points to each of sixteen directions. The arcsine is its odd
 /// polynomial interpolated on chord^2 / 4 in [0, 1/2]; relative error 7e-8.
 void nearestAngles(const AlignedFloats& px, const AlignedFloats& py, const AlignedFloats& pz, std::size_t pointCount, const float* qx,
-                   const float* qy, const float* qz, float* angle) {
+                   const float* qy, const float* qz, float clamp, float* angle) {
   alignas(64) float chord2[16], ratio[16];
   runVectorised([&]<typename Vector>() CHIARO_INLINE {
     const float *x = px.data(), *y = py.data(), *z = pz.data();
@@ -73,17 +126,50 @@ void nearestAngles(const AlignedFloats& px, const AlignedFloats& py, const Align
   });
   for (int lane = 0; lane < 16; ++lane) {
     const float a = std::sqrt(chord2[lane]) * ratio[lane];
-    angle[lane] = a < kMaxDistance ? a : kMaxDistance;
+    angle[lane] = a < clamp ? a : clamp;
   }
 }
 
-/// Directions of one tile, those below the horizon of `normal` mirrored in it.
-void foldTile(const float* x, const float* y, const float* z, const float* cosine, glm::vec3 normal, float* qx, float* qy, float* qz) {
+/// Directions of one tile, those below the horizon of `normal` mirrored in it; a bit for each of those.
+unsigned foldTile(const float* x, const float* y, const float* z, glm::vec3 normal, float* qx, float* qy, float* qz) {
+  alignas(64) float cosine[16];
+  runVectorised([&]<typename Vector>() CHIARO_INLINE {
+    const glm::vec3 n = normal;
+    for (int i = 0; i < 16; i += kWidth<Vector>) {
+      const Vector wx = loadVector<Vector>(x + i), wy = loadVector<Vector>(y + i), wz = loadVector<Vector>(z + i);
+      const Vector dot = wx * n.x + wy * n.y + wz * n.z;
+      const Vector lift = 2.0f * (dot < 0.0f ? dot : Vector{});
+      storeVector(cosine + i, dot);
+      storeVector(qx + i, wx - lift * n.x);
+      storeVector(qy + i, wy - lift * n.y);
+      storeVector(qz + i, wz - lift * n.z);
+    }
+  });
+  unsigned below = 0;
+  for (unsigned lane = 0; lane < 16; ++lane) below |= static_cast<unsigned>(!(cosine[lane] > 0.0f)) << lane;
+  return below;
+}
+
+/// OctahedralGrid::texelAt of sixteen directions.
+void texelsAt(const OctahedralGrid& grid, const float* x, const float* y, const float* z, std::uint32_t* texels) {
+  alignas(64) float u[16], v[16];
+  const auto resolution = static_cast<float>(grid.resolution);
+  runVectorised([&]<typename Vector>() CHIARO_INLINE {
+    const float size = resolution;
+    for (int i = 0; i < 16; i += kWidth<Vector>) {
+      const Vector wx = loadVector<Vector>(x + i), wy = loadVector<Vector>(y + i), wz = loadVector<Vector>(z + i);
+      const Vector ax = wx < 0.0f ? -wx : wx, ay = wy < 0.0f ? -wy : wy, az = wz < 0.0f ? -wz : wz;
+      const Vector sum = ax + ay + az, zero = {};
+      const Vector borderX = 0.5f * ((wz < 0.0f ? ay : ay + az) / sum), borderY = 0.5f * ((wz < 0.0f ? ax : ax + az) / sum);
+      storeVector(u + i, (wx < zero ? borderX : 1.0f - borderX) * size);
+      storeVector(v + i, (wy < zero ? borderY : 1.0f - borderY) * size);
+    }
+  });
+  const auto last = static_cast<std::uint32_t>(grid.resolution - 1), tilesPerRow = static_cast<std::uint32_t>(grid.resolution / 4);
   for (int lane = 0; lane < 16; ++lane) {
-    const float lift = 2.0f * (cosine[lane] < 0.0f ? cosine[lane] : 0.0f);
-    qx[lane] = x[lane] - lift * normal.x;
-    qy[lane] = y[lane] - lift * normal.y;
-    qz[lane] = z[lane] - lift * normal.z;
+    const auto column = std::min(static_cast<std::uint32_t>(static_cast<int>(u[lane])), last),
+               row = std::min(static_cast<std::uint32_t>(static_cast<int>(v[lane])), last);
+    texels[lane] = 16 * (row / 4 * tilesPerRow + column / 4) + 4 * (row % 4) + column % 4;
   }
 }
 
@@ -97,17 +183,37 @@ void pad(AlignedFloats& values, std::size_t count) {
 void boundaryPoints(const OctahedralGrid& grid, const TexelBits& above, const TexelBits& visible, bool doubleSided,
                     std::vector<glm::vec3>& points) {
   points.clear();
+  const auto add = [&](std::size_t a, std::size_t b) { points.push_back(glm::normalize(grid.direction(a) + grid.direction(b))); };
+  const auto tilesPerRow = static_cast<std::size_t>(grid.resolution / 4);
+  // A tile's bits with those of the tile right of it and of the one under it: lane i beside lane i + 1, above lane i + 4.
   for (std::size_t tile = 0; tile < grid.tileCount; ++tile) {
-    // Most tiles are of one kind, and so are those around them.
-    const auto bits = visible[tile];
-    const auto& around = grid.tilesAround[tile];
-    if ((bits == 0 || bits == 0xffff) && std::all_of(around.begin(), around.end(), [&](std::uint32_t t) { return visible[t] == bits; })) continue;
-    for (auto i = grid.firstNeighbour[tile]; i < grid.firstNeighbour[tile + 1]; ++i) {
-      const auto& [a, b] = grid.neighbours[i];
-      if (texelBit(visible.data(), a) == texelBit(visible.data(), b)) continue;
-      if (!doubleSided && !(texelBit(above.data(), a) && texelBit(above.data(), b))) continue;
-      points.push_back(glm::normalize(grid.direction(a) + grid.direction(b)));
+    const bool lastColumn = (tile + 1) % tilesPerRow == 0, lastRow = tile + tilesPerRow >= grid.tileCount;
+    const auto right = lastColumn ? tile : tile + 1, under = lastRow ? tile : tile + tilesPerRow;
+    const unsigned bits = visible[tile], rightBits = visible[right], underBits = visible[under];
+    if ((bits == 0 || bits == 0xffff) && bits == rightBits && bits == underBits) continue;
+    const auto fromRight = [](unsigned here, unsigned there) { return (here >> 1 & 0x7777u) | (there << 3 & 0x8888u); };
+    const auto fromUnder = [](unsigned here, unsigned there) { return here >> 4 | (there << 12 & 0xf000u); };
+    unsigned across = bits ^ fromRight(bits, rightBits), down = bits ^ fromUnder(bits, underBits);
+    if (lastColumn) across &= 0x7777u;
+    if (lastRow) down &= 0x0fffu;
+    if (!doubleSided) {
+      const unsigned high = above[tile];
+      across &= high & fromRight(high, above[right]);
+      down &= high & fromUnder(high, above[under]);
     }
+    for (; across != 0; across &= across - 1) {
+      const auto lane = static_cast<std::size_t>(std::countr_zero(across));
+      add(16 * tile + lane, lane % 4 == 3 ? 16 * right + lane - 3 : 16 * tile + lane + 1);
+    }
+    for (; down != 0; down &= down - 1) {
+      const auto lane = static_cast<std::size_t>(std::countr_zero(down));
+      add(16 * tile + lane, lane >= 12 ? 16 * under + lane - 12 : 16 * tile + lane + 4);
+    }
+  }
+  for (const auto& [a, b] : grid.seam) {
+    if (texelBit(visible.data(), a) == texelBit(visible.data(), b)) continue;
+    if (!doubleSided && !(texelBit(above.data(), a) && texelBit(above.data(), b))) continue;
+    add(a, b);
   }
 }
 
@@ -119,57 +225,217 @@ void SsdfTransform::Points::reserve(std::size_t points) {
   z = AlignedFloats(capacity);
 }
 
-SsdfTransform::SsdfTransform(const OctahedralGrid& grid) : grid_(grid), tileBounds_(grid.tileCount) {
-  const auto bound = [&](Group& group, const std::vector<std::uint32_t>& tiles) {
+/// What the transform reads of one vertex, and where it writes.
+struct SsdfTransform::Signal {
+  glm::vec3 normal;
+  bool doubleSided;
+  const TexelBits& above;
+  const TexelBits& visible;
+  float* distances;
+
+  glm::vec3 folded(glm::vec3 w) const { return doubleSided ? w : fold(w, normal); }
+};
+
+SsdfTransform::SsdfTransform(const OctahedralGrid& sampling, const OctahedralGrid& storage, float clamp)
+    : sampling_(sampling),
+      storage_(storage),
+      clamp_(clamp),
+      clampChord_(2.0f * std::sin(0.5f * clamp)),
+      // The longest texel is 4.9 / resolution; a storage texel is the sampling one that holds it or touches its centre.
+      slack_(2.0f * 4.9f / static_cast<float>(sampling.resolution)) {
+  // Squares (column, row, side) of tiles. A quarter of the map holds two halves of faces, split along its diagonal; so does a square on that
+  // diagonal, and another square lies within one face.
+  const int tilesPerRow = storage.resolution / 4, half = tilesPerRow / 2;
+  convex_ = tilesPerRow % 2 == 0;
+  std::vector<std::array<int, 3>> roots;
+  if (convex_) {
+    for (int q = 0; q < 4; ++q) roots.push_back({q % 2 * half, q / 2 * half, half});
+  } else {  // the axes cut tiles
+    for (int t = 0; t < tilesPerRow * tilesPerRow; ++t) roots.push_back({t % tilesPerRow, t / tilesPerRow, 1});
+  }
+  rootCount_ = static_cast<std::uint32_t>(roots.size());
+  std::vector<std::array<int, 3>> squares = roots;
+  addGroups(squares);
+  std::size_t deepest = 1;
+  for (std::size_t g = 0; g < groups_.size(); ++g) {  // grows as it goes
+    const auto [column, row, side] = squares[g];
+    if (side == 1) continue;
+    const int parts = side % 2 == 0 ? 2 : side;
+    std::vector<std::array<int, 3>> children;
+    for (int k = 0; k < parts * parts; ++k) children.push_back({column + k % parts * (side / parts), row + k / parts * (side / parts), side / parts});
+    groups_[g].firstChild = static_cast<std::uint32_t>(groups_.size());
+    groups_[g].childCount = static_cast<std::uint32_t>(children.size());
+    squares.insert(squares.end(), children.begin(), children.end());
+    addGroups(children);
+    if (column == 0 && row == 0) ++deepest;
+  }
+  kept_.resize(deepest);
+}
+
+void SsdfTransform::addGroups(const std::vector<std::array<int, 3>>& squares) {
+  const auto tilesPerRow = static_cast<std::size_t>(storage_.resolution / 4);
+  for (const auto& square : squares) {
+    const auto column = static_cast<std::size_t>(square[0]), row = static_cast<std::size_t>(square[1]), side = static_cast<std::size_t>(square[2]);
+    auto& group = groups_.emplace_back();
+    group.firstTile = static_cast<std::uint32_t>(tiles_.size());
+    group.tileCount = static_cast<std::uint32_t>(side * side);
     glm::dvec3 sum(0.0);
-    for (const auto tile : tiles)
-      for (std::size_t lane = 0; lane < 16; ++lane) sum += glm::dvec3(grid.direction(16 * tile + lane));
-    group.center = glm::vec3(sum / (16.0 * static_cast<double>(tiles.size())));
-    for (const auto tile : tiles)
+    for (std::size_t j = row; j < row + side; ++j)
+      for (std::size_t i = column; i < column + side; ++i) {
+        tiles_.push_back({static_cast<std::uint32_t>(j * tilesPerRow + i), storage_.rowMajor[16 * (j * tilesPerRow + i)]});
+        for (std::size_t lane = 0; lane < 16; ++lane) sum += glm::dvec3(storage_.direction(16 * std::size_t{tiles_.back().number} + lane));
+      }
+    group.center = glm::vec3(sum / (16.0 * static_cast<double>(side * side)));
+    for (auto t = group.firstTile; t < tiles_.size(); ++t)
       for (std::size_t lane = 0; lane < 16; ++lane)
-        group.radius = std::max(group.radius, glm::length(grid.direction(16 * tile + lane) - group.center));
-  };
-  const int tilesPerRow = grid.resolution / 4;
-  for (int row = 0; row < tilesPerRow; row += 4) {
-    for (int column = 0; column < tilesPerRow; column += 4) {
-      std::vector<std::uint32_t> tiles;
-      for (int j = row; j < std::min(row + 4, tilesPerRow); ++j)
-        for (int i = column; i < std::min(column + 4, tilesPerRow); ++i) tiles.push_back(static_cast<std::uint32_t>(j * tilesPerRow + i));
-      auto& group = groups_.emplace_back();
-      bound(group, tiles);
-      group.firstTile = static_cast<std::uint32_t>(tiles_.size());
-      group.tileCount = static_cast<std::uint32_t>(tiles.size());
-      tiles_.insert(tiles_.end(), tiles.begin(), tiles.end());
+        group.radius = std::max(group.radius, glm::distance(storage_.direction(16 * std::size_t{tiles_[t].number} + lane), group.center));
+    const auto first = row * tilesPerRow + column, last = first + (side - 1) * tilesPerRow;
+    corners_.push_back({storage_.direction(16 * first), storage_.direction(16 * (first + side - 1) + 3), storage_.direction(16 * last + 12),
+                        storage_.direction(16 * (last + side - 1) + 15)});
+  }
+}
+
+void SsdfTransform::keepNear(const Points& from, glm::vec3 center, float radius, float reach, Points& to) {
+  to.reserve(from.count + 16);
+  to.count = 0;
+  const float least = std::sqrt(chordsTo(from.x, from.y, from.z, from.count, center, chord2_));
+  // A little more than the inequality asks for, to be safe from rounding.
+  const float most = std::min(least + 2.0f * radius, reach) * 1.00001f + 1e-6f;
+  const float most2 = most * most;
+  const float *x = from.x.data(), *y = from.y.data(), *z = from.z.data(), *chord2 = chord2_.data();
+  float *toX = to.x.data(), *toY = to.y.data(), *toZ = to.z.data();
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < from.count; i += 4) {
+    // Points come in the order of the map, so that most fours go together.
+    const auto isNear = std::bit_cast<std::array<std::uint64_t, 2>>(loadVector<Float4>(chord2 + i) <= most2);
+    if ((isNear[0] | isNear[1]) == 0) continue;
+    for (std::size_t j = i; j < std::min(i + 4, from.count); ++j) {
+      toX[kept] = x[j];
+      toY[kept] = y[j];
+      toZ[kept] = z[j];
+      kept += chord2[j] <= most2;
     }
   }
-  for (std::uint32_t tile = 0; tile < grid.tileCount; ++tile) bound(tileBounds_[tile], {tile});
+  to.count = kept;
+  if (kept == 0) return;
+  pad(to.x, kept);
+  pad(to.y, kept);
+  pad(to.z, kept);
 }
 
-void SsdfTransform::cull(const Points& from, glm::vec3 center, float radius, Points& to) {
-  to.reserve(from.count);
-  to.count = 0;
-  if (from.count == 0) return;
-  const float least = std::sqrt(chordsTo(from.x, from.y, from.z, from.count, center, chord2_));
-  // A little more than the inequality asks for, to be safe from rounding. Nothing beyond pi/2 matters.
-  const float reach = std::min(least + 2.0f * radius, kMaxChord + radius) * 1.00001f + 1e-6f;
-  for (std::size_t i = 0; i < from.count; ++i) {
-    to.x[to.count] = from.x[i];
-    to.y[to.count] = from.y[i];
-    to.z[to.count] = from.z[i];
-    to.count += chord2_[i] <= reach * reach;
+void SsdfTransform::keepUndominated(Points& points, const glm::vec3* corners) {
+  const auto stride = (points.count + 15) / 16 * 16;
+  // The rivals: the point nearest to each corner.
+  float rival[4][4];
+  for (std::size_t c = 0; c < 4; ++c) {
+    const auto nearest = nearestTo(points.x, points.y, points.z, points.count, corners[c], chord2_.data() + c * stride);
+    for (std::size_t d = 0; d < 4; ++d) {
+      const glm::vec3 p(points.x[nearest], points.y[nearest], points.z[nearest]);
+      const auto to = p - corners[d];
+      // A hair farther, so that no rounding drops what is as near.
+      rival[c][d] = (to.x * to.x + to.y * to.y + to.z * to.z) * 1.000002f;
+    }
   }
-  if (to.count == 0) return;
-  pad(to.x, to.count);
-  pad(to.y, to.count);
-  pad(to.z, to.count);
+  markUndominated(chord2_.data(), stride, rival);
+  const float* keep = chord2_.data();
+  float *x = points.x.data(), *y = points.y.data(), *z = points.z.data();
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < points.count; ++i) {
+    const float px = x[i], py = y[i], pz = z[i];
+    x[kept] = px;
+    y[kept] = py;
+    z[kept] = pz;
+    kept += keep[i] != 0.0f;
+  }
+  points.count = kept;
+  pad(points.x, kept);
+  pad(points.y, kept);
+  pad(points.z, kept);
 }
 
-void SsdfTransform::operator()(glm::vec3 normal, const AlignedFloats& cosine, const TexelBits& above, const TexelBits& visible,
-                               bool doubleSided, float* distances) {
-  boundaryPoints(grid_, above, visible, doubleSided, boundary_);
+void SsdfTransform::fill(const Group& group, const Signal& signal) const {
+  // No edge is near: one texel says what all of them see.
+  const auto texel = 16 * std::size_t{tiles_[group.firstTile].number};
+  auto w = storage_.direction(texel);
+  std::size_t source = texel;
+  if (!signal.doubleSided && !texelBit(signal.above.data(), texel)) source = nearestAbove(storage_, signal.above, fold(w, signal.normal));
+  const float value = texelBit(signal.visible.data(), source) ? clamp_ : -clamp_;
+  for (auto t = group.firstTile; t < group.firstTile + group.tileCount; ++t)
+    for (int row = 0; row < 4; ++row) std::fill_n(signal.distances + tiles_[t].rowMajor + row * storage_.resolution, 4, value);
+}
+
+void SsdfTransform::visitTile(const Group& group, const Points& points, bool folded, const Signal& signal) const {
+  const auto [number, rowMajor] = tiles_[group.firstTile];
+  const std::size_t tile = number, first = 16 * tile;
+  const float *qx = storage_.x.data() + first, *qy = storage_.y.data() + first, *qz = storage_.z.data() + first;
+  alignas(64) float angle[16], foldedX[16], foldedY[16], foldedZ[16];
+  unsigned below = 0;
+  if (folded) {
+    below = foldTile(qx, qy, qz, signal.normal, foldedX, foldedY, foldedZ);
+    qx = foldedX;
+    qy = foldedY;
+    qz = foldedZ;
+  }
+  nearestAngles(points.x, points.y, points.z, points.count, qx, qy, qz, clamp_, angle);
+  unsigned seen = signal.visible[tile];
+  if (below != 0) {
+    const auto mirrored = [&](unsigned lane) {
+      return texelBit(signal.visible.data(), nearestAbove(storage_, signal.above, {qx[lane], qy[lane], qz[lane]}));
+    };
+    const float nearest = *std::min_element(angle, angle + 16);
+    if (below == 0xffffu && nearest > 2.0f * group.radius + slack_) {
+      seen = mirrored(0) ? 0xffffu : 0u;
+    } else {
+      std::uint32_t home[16];
+      texelsAt(storage_, qx, qy, qz, home);
+      for (unsigned left = below; left != 0; left &= left - 1) {
+        const auto lane = static_cast<unsigned>(std::countr_zero(left));
+        const bool sees = texelBit(signal.above.data(), home[lane]) ? texelBit(signal.visible.data(), home[lane]) : mirrored(lane);
+        seen = sees ? seen | 1u << lane : seen & ~(1u << lane);
+      }
+    }
+  }
+  for (unsigned lane = 0; lane < 16; ++lane)
+    angle[lane] = std::bit_cast<float>(std::bit_cast<std::uint32_t>(angle[lane]) | (~seen >> lane & 1u) << 31);
+  for (int row = 0; row < 4; ++row) std::copy_n(angle + 4 * row, 4, signal.distances + rowMajor + row * storage_.resolution);
+}
+
+void SsdfTransform::visit(const Group& group, const Points& from, std::size_t depth, const Signal& signal) {
+  const float height = signal.doubleSided ? 2.0f : glm::dot(group.center, signal.normal);
+  const bool folded = height <= group.radius + 1e-5f, straddles = folded && height >= -group.radius - 1e-5f;
+  const Points* points = &from;
+  if (from.count > (group.childCount == 0 ? kFewOfTile : kFew) && group.radius < 0.7f) {
+    auto& kept = kept_[depth];
+    const float reach = clampChord_ + group.radius;
+    keepNear(from, signal.folded(group.center), group.radius, reach, kept);
+    if (kept.count == 0) {
+      if (clampChord_ > slack_) {
+        fill(group, signal);
+        return;
+      }
+    } else {
+      points = &kept;
+      if (group.childCount != 0 && kept.count > kFewToCompare && convex_ && !straddles) {
+        auto corners = corners_[static_cast<std::size_t>(&group - groups_.data())];
+        for (auto& corner : corners) corner = signal.folded(corner);
+        keepUndominated(kept, corners.data());
+      }
+    }
+  }
+  if (group.childCount == 0) {
+    visitTile(group, *points, folded, signal);
+    return;
+  }
+  for (auto child = group.firstChild; child < group.firstChild + group.childCount; ++child) visit(groups_[child], *points, depth + 1, signal);
+}
+
+void SsdfTransform::operator()(glm::vec3 normal, bool doubleSided, const TexelBits& above, const TexelBits& visible,
+                               const TexelBits& storedAbove, const TexelBits& stored, float* distances) {
+  const Signal signal{normal, doubleSided, storedAbove, stored, distances};
+  boundaryPoints(sampling_, above, visible, doubleSided, boundary_);
   if (boundary_.empty()) {
-    for (std::size_t t = 0; t < grid_.texelCount; ++t)
-      distances[grid_.rowMajor[t]] = texelBit(visible.data(), t) ? kMaxDistance : -kMaxDistance;
+    // The root groups together; a sign of its own for each costs nothing.
+    for (std::uint32_t g = 0; g < rootCount_; ++g) fill(groups_[g], signal);
     return;
   }
   all_.reserve(boundary_.size());
@@ -182,28 +448,8 @@ void SsdfTransform::operator()(glm::vec3 normal, const AlignedFloats& cosine, co
   pad(all_.x, all_.count);
   pad(all_.y, all_.count);
   pad(all_.z, all_.count);
-  if (chord2_.data() == nullptr || all_.capacity > chordCapacity_) chord2_ = AlignedFloats(chordCapacity_ = all_.capacity);
-
-  const auto folded = [&](glm::vec3 w) { return doubleSided ? w : fold(w, normal); };
-  alignas(64) float angle[16];
-  for (const auto& group : groups_) {
-    cull(all_, folded(group.center), group.radius, near_);
-    for (std::uint32_t k = 0; k < group.tileCount; ++k) {
-      const auto tile = tiles_[group.firstTile + k];
-      cull(near_, folded(tileBounds_[tile].center), tileBounds_[tile].radius, nearest_);
-      const std::size_t first = 16 * std::size_t{tile};
-      const float *qx = grid_.x.data() + first, *qy = grid_.y.data() + first, *qz = grid_.z.data() + first;
-      if (!doubleSided && above[tile] != 0xffff) {
-        foldTile(qx, qy, qz, cosine.data() + first, normal, folded_[0], folded_[1], folded_[2]);
-        qx = folded_[0];
-        qy = folded_[1];
-        qz = folded_[2];
-      }
-      nearestAngles(nearest_.x, nearest_.y, nearest_.z, nearest_.count, qx, qy, qz, angle);
-      for (std::size_t lane = 0; lane < 16; ++lane) angle[lane] = (visible[tile] >> lane & 1) != 0 ? angle[lane] : -angle[lane];
-      for (std::size_t row = 0; row < 4; ++row) std::copy_n(angle + 4 * row, 4, distances + grid_.rowMajor[first + 4 * row]);
-    }
-  }
+  if (chordCapacity_ < 4 * all_.capacity) chord2_ = AlignedFloats(chordCapacity_ = 4 * all_.capacity);
+  for (std::uint32_t g = 0; g < rootCount_; ++g) visit(groups_[g], all_, 0, signal);
 }
 
 }  // namespace chiaro

@@ -1,7 +1,9 @@
 #pragma once
 /// Spherical signed distance functions from visibility bits (Wang et al. 2009, section 4).
 
+#include <array>
 #include <cstdint>
+#include <glm/glm.hpp>
 #include <vector>
 
 #include "precompute/visibility/octahedral_grid.h"
@@ -19,19 +21,26 @@ inline constexpr float kMaxDistance = 1.57079632679f;  ///< radians; also the va
 void boundaryPoints(const OctahedralGrid& grid, const TexelBits& above, const TexelBits& visible, bool doubleSided,
                     std::vector<glm::vec3>& points);
 
-/// Working memory of one thread, so that a vertex costs no allocation.
+/// The map at one resolution from bits at another or the same. Holds the working memory of one thread, so that a vertex costs no
+/// allocation.
 class SsdfTransform {
  public:
-  explicit SsdfTransform(const OctahedralGrid& grid);
+  /// The grids must outlive this object. clamp: radians, in (0, pi/2]; distances beyond it are not told apart, and cost little.
+  SsdfTransform(const OctahedralGrid& sampling, const OctahedralGrid& storage, float clamp = kMaxDistance);
 
-  /// Signed angle (radians, in [-pi/2, pi/2]) from each texel centre to the nearest boundary point: exact, positive where visible,
-  /// +-pi/2 where no edge is that near. One-sided vertices: texels below the horizon take the distance of their mirror image in it.
-  /// distances: #texels, row-major.
+  /// Signed angle (radians) from each texel centre of `storage` to the nearest boundary point of `sampling`: exact, positive where visible,
+  /// +-clamp where no edge is nearer. One-sided vertices: texels below the horizon take the distance of their mirror image in it.
   ///
-  /// Per 16x16 and then per 4x4 texels only those points are kept that may be nearest to one of them: by the triangle inequality
-  /// of chords, those within the smallest chord to the group's centre plus twice the group's radius.
-  void operator()(glm::vec3 normal, const AlignedFloats& cosine, const TexelBits& above, const TexelBits& visible, bool doubleSided,
-                  float* distances);
+  /// above, visible: at `sampling`. storedAbove, stored: at `storage`; each bit must be that of one of the sampling texels which hold
+  /// its centre or touch it (AdaptiveVisibility::at, or the same bits where the resolutions are). Of a one-sided vertex the bits
+  /// below the horizon are not read. distances: #texels of `storage`, row-major.
+  ///
+  /// Groups of texels are halved from a quarter of the map down to 4x4. A group keeps those of its parent's points that may be
+  /// nearest to one of its texels. First by the triangle inequality of chords: those within the smallest chord to its centre plus twice its
+  /// radius. Then, as the texels lie in the convex hull of the four in its corners (the map's faces are gnomonic) and a point
+  /// is nearer than another in a half-space: none that is farther than one other point from all four.
+  void operator()(glm::vec3 normal, bool doubleSided, const TexelBits& above, const TexelBits& visible, const TexelBits& storedAbove,
+                  const TexelBits& stored, float* distances);
 
  private:
   struct Points {
@@ -42,20 +51,37 @@ class SsdfTransform {
   };
   struct Group {
     glm::vec3 center{0.0f};
-    float radius = 0.0f;  ///< largest chord to one of its texels
-    std::uint32_t firstTile = 0;
+    float radius = 0.0f;            ///< largest chord to one of its texels
+    std::uint32_t firstTile = 0;    ///< into tiles_
     std::uint32_t tileCount = 0;
+    std::uint32_t firstChild = 0;   ///< into groups_; children are consecutive, none if it is one tile
+    std::uint32_t childCount = 0;
   };
-  void cull(const Points& from, glm::vec3 center, float radius, Points& to);
+  struct Tile {
+    std::uint32_t number = 0;
+    std::uint32_t rowMajor = 0;  ///< of its first texel
+  };
+  struct Signal;
+  void addGroups(const std::vector<std::array<int, 3>>& squares);
+  void visit(const Group& group, const Points& from, std::size_t depth, const Signal& signal);
+  void visitTile(const Group& group, const Points& points, bool folded, const Signal& signal) const;
+  void fill(const Group& group, const Signal& signal) const;
+  void keepNear(const Points& from, glm::vec3 center, float radius, float reach, Points& to);
+  void keepUndominated(Points& points, const glm::vec3* corners);
 
-  const OctahedralGrid& grid_;
-  std::vector<Group> groups_;          ///< 16x16 texels
-  std::vector<std::uint32_t> tiles_;   ///< tiles of each group
-  std::vector<Group> tileBounds_;      ///< 4x4 texels, by tile
+  const OctahedralGrid& sampling_;
+  const OctahedralGrid& storage_;
+  float clamp_, clampChord_;
+  float slack_;                        ///< chord; texels that differ have a boundary point so near to the way between them
+  std::vector<Group> groups_;
+  std::uint32_t rootCount_ = 0;
+  std::vector<std::array<glm::vec3, 4>> corners_;  ///< by group; directions of the texels in its corners
+  bool convex_;                        ///< all texels of a group lie in the hull of its corners
+  std::vector<Tile> tiles_;            ///< of each group
   std::vector<glm::vec3> boundary_;
-  Points all_, near_, nearest_;
-  alignas(64) float folded_[3][16] = {};
-  AlignedFloats chord2_;
+  Points all_;
+  std::vector<Points> kept_;           ///< by depth
+  AlignedFloats chord2_;               ///< to the centre, or to four corners one after the other
   std::size_t chordCapacity_ = 0;
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 #include "shaders/cpp/lobe.h"
 
@@ -38,17 +39,10 @@ OctahedralGrid::OctahedralGrid(int side)
   std::sort(neighbours.begin(), neighbours.end());
   neighbours.erase(std::unique(neighbours.begin(), neighbours.end()), neighbours.end());
 
-  tilesAround.resize(tileCount);
-  std::size_t next = 0;
-  for (std::uint32_t tile = 0; tile < tileCount; ++tile) {
-    firstNeighbour.push_back(next);
-    auto& around = tilesAround[tile];
-    for (; next < neighbours.size() && neighbours[next].first / 16 == tile; ++next) {
-      const auto other = neighbours[next].second / 16;
-      if (other != tile && std::find(around.begin(), around.end(), other) == around.end()) around.push_back(other);
-    }
+  for (const auto& [a, b] : neighbours) {
+    const auto from = static_cast<int>(rowMajor[a]), to = static_cast<int>(rowMajor[b]);
+    if (std::abs(from % resolution - to % resolution) + std::abs(from / resolution - to / resolution) != 1) seam.emplace_back(a, b);
   }
-  firstNeighbour.push_back(next);
 }
 
 std::size_t OctahedralGrid::texelAt(glm::vec3 direction) const {

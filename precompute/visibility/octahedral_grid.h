@@ -39,11 +39,10 @@ struct OctahedralGrid {
   std::vector<float> solidAngle;         ///< #texels, sr; sums to 4 pi
   std::vector<std::uint32_t> rowMajor;   ///< #texels
   std::vector<std::uint32_t> tiled;      ///< #texels; the inverse of `rowMajor`
-  /// Texels that share an edge, each pair once; pairs across the map's border join texels that touch on the sphere.
-  /// Sorted; those whose first texel is in tile t are at [firstNeighbour[t], firstNeighbour[t + 1]), their second in t or in tilesAround[t].
+  /// Texels that share an edge, each pair once, sorted; pairs across the map's border join texels that touch on the sphere.
   std::vector<std::pair<std::uint32_t, std::uint32_t>> neighbours;
-  std::vector<std::size_t> firstNeighbour;               ///< #tiles + 1
-  std::vector<std::vector<std::uint32_t>> tilesAround;   ///< #tiles
+  /// Those of them that are not side by side in the map.
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> seam;
 
   glm::vec3 direction(std::size_t texel) const { return {x[texel], y[texel], z[texel]}; }
   /// The texel that holds `direction`.

@@ -8,8 +8,9 @@ namespace {
 
 constexpr float kFar = std::numeric_limits<float>::infinity();
 
-/// The traced texel (a bit of `above`) nearest to `direction`, which is above the horizon itself.
-std::size_t nearestTraced(const OctahedralGrid& grid, const TexelBits& above, glm::vec3 direction) {
+}  // namespace
+
+std::size_t nearestAbove(const OctahedralGrid& grid, const TexelBits& above, glm::vec3 direction) {
   const auto home = grid.texelAt(direction);
   if (texelBit(above.data(), home)) return home;
   auto best = home;
@@ -26,8 +27,6 @@ std::size_t nearestTraced(const OctahedralGrid& grid, const TexelBits& above, gl
   }
   return best;
 }
-
-}  // namespace
 
 void texelsAbove(const OctahedralGrid& grid, glm::vec3 normal, AlignedFloats& cosine, TexelBits& above) {
   above.resize(grid.tileCount);
@@ -46,7 +45,7 @@ void mirrorBelowHorizon(const OctahedralGrid& grid, glm::vec3 n, const TexelBits
     for (unsigned below = static_cast<std::uint16_t>(~above[tile]); below != 0; below &= below - 1) {
       const auto lane = static_cast<std::size_t>(std::countr_zero(below));
       const auto w = grid.direction(16 * tile + lane);
-      const auto source = nearestTraced(grid, above, w - 2.0f * glm::dot(w, n) * n);
+      const auto source = nearestAbove(grid, above, w - 2.0f * glm::dot(w, n) * n);
       const unsigned bit = 1u << lane;
       visible[tile] = static_cast<std::uint16_t>(texelBit(visible.data(), source) ? visible[tile] | bit : visible[tile] & ~bit);
     }

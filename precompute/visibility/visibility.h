@@ -24,6 +24,9 @@ void texelsAbove(const OctahedralGrid& grid, glm::vec3 normal, AlignedFloats& co
 std::uint64_t traceVisibility(const RayScene& rays, const OctahedralGrid& grid, const Viewpoint& viewpoint, const TexelBits& above,
                               TexelBits& visible);
 
+/// The texel of `above` that holds `direction`, or, next to the horizon, is nearest to it. `direction` is above the horizon itself.
+std::size_t nearestAbove(const OctahedralGrid& grid, const TexelBits& above, glm::vec3 direction);
+
 /// For every texel not in `above`: the bit of the texel of `above` that holds (or, next to the horizon, is nearest to) its mirror image.
 void mirrorBelowHorizon(const OctahedralGrid& grid, glm::vec3 normal, const TexelBits& above, TexelBits& visible);
 

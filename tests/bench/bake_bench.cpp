@@ -118,14 +118,14 @@ BENCHMARK(visibleFractions)->Unit(benchmark::kMicrosecond);
 
 void ssdf(benchmark::State& state) {
   auto& b = bench();
-  SsdfTransform transform(b.grid);
+  SsdfTransform transform(b.grid, b.grid);
   std::vector<float> distances(b.grid.texelCount);
   TexelBits above;
   std::size_t v = 0;
   for (auto _ : state) {
     const auto i = v++ % kVertices;
     texelsAbove(b.grid, b.viewpoints[i].normal, b.cosine, above);
-    transform(b.viewpoints[i].normal, b.cosine, above, b.visible[i], b.viewpoints[i].doubleSided, distances.data());
+    transform(b.viewpoints[i].normal, b.viewpoints[i].doubleSided, above, b.visible[i], above, b.visible[i], distances.data());
     benchmark::DoNotOptimize(distances.data());
   }
   countVertices(state);
@@ -160,12 +160,12 @@ void compression(benchmark::State& state) {
   auto& b = bench();
   const auto rows = static_cast<std::size_t>(state.range(0));
   FixedPointMatrix matrix(rows, b.grid.texelCount, kMaxDistance);
-  SsdfTransform transform(b.grid);
+  SsdfTransform transform(b.grid, b.grid);
   std::vector<float> distances(b.grid.texelCount);
   for (std::size_t row = 0; row < rows; ++row) {
     const auto i = row % kVertices;
     texelsAbove(b.grid, b.viewpoints[i].normal, b.cosine, b.above[i]);
-    transform(b.viewpoints[i].normal, b.cosine, b.above[i], b.visible[i], b.viewpoints[i].doubleSided, distances.data());
+    transform(b.viewpoints[i].normal, b.viewpoints[i].doubleSided, b.above[i], b.visible[i], b.above[i], b.visible[i], distances.data());
     matrix.setRow(row, distances.data());
   }
   for (auto _ : state) benchmark::DoNotOptimize(computePca(matrix, b.grid.solidAngle, {.terms = 48, .threads = 1}));

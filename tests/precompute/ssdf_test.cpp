@@ -8,6 +8,8 @@
 #include <functional>
 #include <numbers>
 #include <random>
+#include <tuple>
+#include <utility>
 
 namespace chiaro {
 namespace {
@@ -36,8 +38,8 @@ Signal signalOf(const OctahedralGrid& grid, glm::vec3 normal, bool doubleSided, 
     if (sees(grid.direction(t)))
       signal.visible[t / 16] = static_cast<std::uint16_t>(signal.visible[t / 16] | 1u << t % 16);
   if (!doubleSided) mirrorBelowHorizon(grid, signal.normal, signal.above, signal.visible);
-  SsdfTransform transform(grid);
-  transform(signal.normal, signal.cosine, signal.above, signal.visible, doubleSided, signal.ssdf.data());
+  SsdfTransform transform(grid, grid);
+  transform(signal.normal, doubleSided, signal.above, signal.visible, signal.above, signal.visible, signal.ssdf.data());
   return signal;
 }
 
@@ -82,6 +84,63 @@ TEST(Ssdf, EqualsBruteForceForAnyPattern) {
     expectEqualsBruteForce(grid, signalOf(grid, {0, 1, 0}, true, [&](glm::vec3 w) { return grid.texelAt(w) != hidden; }));
 }
 
+TEST(Ssdf, AtAnyResolutionAndClamp) {
+  std::mt19937 random(6);
+  std::normal_distribution<float> gaussian;
+  const auto direction = [&] { return glm::normalize(glm::vec3(gaussian(random), gaussian(random), gaussian(random))); };
+  for (const auto& [sampling, storage] : {std::pair{64, 64}, {128, 32}, {128, 48}, {64, 20}, {32, 128}, {256, 256}}) {
+    const OctahedralGrid samplingGrid(sampling), storageGrid(storage);
+    for (const bool doubleSided : {false, true}) {
+      for (const float clamp : {kMaxDistance, 0.5f, 0.05f}) {
+        const auto normal = direction();
+        std::vector<glm::vec4> caps;
+        for (int i = 0; i < 6; ++i) caps.emplace_back(direction(), 0.95f);
+        const auto sees = [&](glm::vec3 w) {
+          return std::none_of(caps.begin(), caps.end(), [&](const glm::vec4& cap) { return glm::dot(w, glm::vec3(cap)) > cap.w; });
+        };
+        const auto sampled = signalOf(samplingGrid, normal, doubleSided, sees);
+        auto stored = Signal(storageGrid, normal, doubleSided);
+        for (std::size_t t = 0; t < storageGrid.texelCount; ++t)
+          if (texelBit(sampled.visible.data(), samplingGrid.texelAt(storageGrid.direction(t))))
+            stored.visible[t / 16] = static_cast<std::uint16_t>(stored.visible[t / 16] | 1u << t % 16);
+        if (!doubleSided) mirrorBelowHorizon(storageGrid, normal, stored.above, stored.visible);
+        SsdfTransform transform(samplingGrid, storageGrid, clamp);
+        transform(normal, doubleSided, sampled.above, sampled.visible, stored.above, stored.visible, stored.ssdf.data());
+        std::vector<glm::vec3> points;
+        boundaryPoints(samplingGrid, sampled.above, sampled.visible, doubleSided, points);
+        ASSERT_FALSE(points.empty());
+        for (std::size_t t = 0; t < storageGrid.texelCount; ++t) {
+          const double distance = std::min(bruteForce(stored, points, storageGrid.direction(t)), static_cast<double>(clamp));
+          const double expected = texelBit(stored.visible.data(), t) ? distance : -distance;
+          ASSERT_LE(std::abs(static_cast<double>(stored.ssdf[storageGrid.rowMajor[t]]) - expected), 1e-6)
+              << sampling << " to " << storage << " clamp " << clamp << " two sides " << doubleSided << " texel " << t;
+        }
+      }
+    }
+  }
+}
+
+TEST(Ssdf, BoundaryPointsAreAllPairsThatDiffer) {
+  std::mt19937 random(8);
+  for (const int resolution : {16, 20, 32}) {
+    const OctahedralGrid grid(resolution);
+    for (const bool doubleSided : {false, true}) {
+      const Signal signal = signalOf(grid, {0.3f, 0.9f, 0.2f}, doubleSided, [&](glm::vec3) { return random() % 2 == 0; });
+      std::vector<glm::vec3> points, expected;
+      boundaryPoints(grid, signal.above, signal.visible, doubleSided, points);
+      for (const auto& [a, b] : grid.neighbours) {
+        if (texelBit(signal.visible.data(), a) == texelBit(signal.visible.data(), b)) continue;
+        if (!doubleSided && !(texelBit(signal.above.data(), a) && texelBit(signal.above.data(), b))) continue;
+        expected.push_back(glm::normalize(grid.direction(a) + grid.direction(b)));
+      }
+      const auto less = [](glm::vec3 a, glm::vec3 b) { return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z); };
+      std::sort(points.begin(), points.end(), less);
+      std::sort(expected.begin(), expected.end(), less);
+      EXPECT_TRUE(points == expected) << resolution;
+    }
+  }
+}
+
 TEST(Ssdf, WithoutAnEdgeItIsHalfPi) {
   const OctahedralGrid grid(16);
   for (const bool sees : {false, true})
@@ -90,8 +149,8 @@ TEST(Ssdf, WithoutAnEdgeItIsHalfPi) {
   const glm::vec3 n = glm::normalize(glm::vec3(1, 2, 3));
   Signal signal(grid, n, false);
   signal.visible = signal.above;
-  SsdfTransform transform(grid);
-  transform(n, signal.cosine, signal.above, signal.visible, false, signal.ssdf.data());
+  SsdfTransform transform(grid, grid);
+  transform(n, false, signal.above, signal.visible, signal.above, signal.visible, signal.ssdf.data());
   for (const float s : signal.ssdf) EXPECT_EQ(std::abs(s), kMaxDistance);
 }
 

@@ -1,0 +1,284 @@
+#include "precompute/visibility/adaptive_visibility.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "shaders/cpp/lobe.h"
+
+namespace chiaro {
+namespace {
+
+/// So many directions of one 4x4 tile are a packet of their own; fewer share one with those of other tiles.
+constexpr int kOwnPacket = 12;
+
+constexpr Board bitOf(std::size_t texel) { return Board{1} << texel % 64; }
+
+/// Of the four texels `steps` levels finer that meet at the centre of `texel`: the last is right of it and below, which is
+/// what OctahedralGrid::texelAt takes the centre for. Texels: 64 board + bit.
+std::size_t besideCentre(std::size_t texel, std::size_t steps, std::size_t corner) {
+  const auto dx = corner % 2, dy = corner / 2;
+  const auto child = [](std::size_t of, std::size_t x, std::size_t y) {
+    const auto lane = of % 16, column = 2 * (lane % 4) + x, row = 2 * (lane / 4) + y;
+    return 64 * (of / 16) + 32 * (row / 4) + 16 * (column / 4) + 4 * (row % 4) + column % 4;
+  };
+  texel = child(texel, dx, dy);
+  for (std::size_t step = 1; step < steps; ++step) texel = child(texel, 1 - dx, 1 - dy);
+  return texel;
+}
+
+}  // namespace
+
+AdaptiveSphere::AdaptiveSphere(int coarse, int sampling) {
+  if (coarse < 8 || coarse % 8 != 0) throw std::invalid_argument("coarse resolution: not a multiple of 8");
+  levels.emplace_back(coarse);
+  while (levels.back().resolution < sampling) levels.push_back(SphereBoards::finer(levels.back()));
+  if (levels.back().resolution != sampling) throw std::invalid_argument("sampling resolution: not the coarse one times a power of two");
+}
+
+AdaptiveVisibility::AdaptiveVisibility(const RayScene& rays, const AdaptiveSphere& sphere)
+    : sphere_(sphere), packet_(rays), maps_(sphere.levels.size()) {
+  for (std::size_t level = 0; level < maps_.size(); ++level) {
+    const auto count = sphere.levels[level].boardCount;
+    auto& map = maps_[level];
+    for (auto* bits : {&map.side, &map.seen, &map.hidden, &map.traced, &map.visible}) bits->resize(count);
+  }
+  const auto most = sphere.levels.back().boardCount;
+  marked_.resize(most);
+  changed_.resize(most);
+  otherSide_.resize(most);
+}
+
+std::uint64_t AdaptiveVisibility::operator()(const Viewpoint& viewpoint) {
+  rays_ = 0;
+  bothSides_ = viewpoint.doubleSided;
+  for (std::size_t level = 0; level < maps_.size(); ++level) {
+    auto& map = maps_[level];
+    sphere_.levels[level].above(viewpoint.normal, map.side);
+    std::ranges::fill(map.visible, Board{0});
+    std::ranges::fill(map.traced, Board{0});
+  }
+  sphere_.levels.back().toTexels(maps_.back().side, above_);
+  traceSide(viewpoint.front);
+  if (viewpoint.doubleSided) {
+    for (auto& map : maps_)
+      for (auto& bits : map.side) bits = ~bits;
+    traceSide(viewpoint.back);
+    for (auto& map : maps_)
+      for (auto& bits : map.side) bits = ~bits;
+  }
+  sphere_.levels.back().toTexels(maps_.back().visible, visible_);
+  return rays_;
+}
+
+void AdaptiveVisibility::traceSide(glm::vec3 origin) {
+  packet_.setOrigin(origin);
+  traceAll(0);
+  for (std::size_t level = 1; level < maps_.size(); ++level) {
+    inherit(level);
+    // Every other level is enough: following an edge over two texels costs fewer rays than tracing it at one level more.
+    if ((maps_.size() - 1 - level) % 2 == 0) refine(level);
+  }
+  for (auto& map : maps_)
+    for (std::size_t b = 0; b < map.seen.size(); ++b) map.visible[b] |= map.seen[b];
+}
+
+void AdaptiveVisibility::traceAll(std::size_t level) {
+  auto& map = maps_[level];
+  const auto& boards = sphere_.levels[level];
+  for (std::size_t b = 0; b < boards.boardCount; ++b) {
+    map.traced[b] |= map.side[b];
+    map.seen[b] = map.hidden[b] = 0;
+    for (std::size_t k = 0; k < 4; ++k) {
+      const auto which = static_cast<unsigned>(map.side[b] >> 16 * k & 0xffffu);
+      if (which == 0) continue;
+      const auto first = 64 * b + 16 * k;
+      const auto hits = packet_(boards.x.data() + first, boards.y.data() + first, boards.z.data() + first, which);
+      map.hidden[b] |= Board{hits} << 16 * k;
+      map.seen[b] |= Board{which & ~hits} << 16 * k;
+      rays_ += static_cast<std::uint64_t>(std::popcount(which));
+    }
+  }
+}
+
+void AdaptiveVisibility::inherit(std::size_t level) {
+  const auto& from = maps_[level - 1];
+  const auto& coarse = sphere_.levels[level - 1];
+  auto& to = maps_[level];
+  for (std::size_t b = 0; b < coarse.boardCount; ++b) {
+    auto seen = from.seen[b], hidden = from.hidden[b];
+    if ((seen | hidden) != ~Board{0} && (seen | hidden) != 0) {
+      // On the horizon: a texel that is below takes what those about it agree on.
+      const auto nearSeen = coarse.around8(from.seen.data(), b), nearHidden = coarse.around8(from.hidden.data(), b);
+      const auto below = ~(seen | hidden);
+      seen |= below & nearSeen & ~nearHidden;
+      hidden |= below & nearHidden & ~nearSeen;
+    }
+    for (std::size_t k = 0; k < 4; ++k) {
+      to.seen[4 * b + k] = doubled(static_cast<std::uint16_t>(seen >> 16 * k)) & to.side[4 * b + k];
+      to.hidden[4 * b + k] = doubled(static_cast<std::uint16_t>(hidden >> 16 * k)) & to.side[4 * b + k];
+    }
+  }
+}
+
+void AdaptiveVisibility::mark(std::size_t board) {
+  if (marked_[board] != 0) return;
+  marked_[board] = 1;
+  next_.push_back(static_cast<std::uint32_t>(board));
+}
+
+void AdaptiveVisibility::settle(std::size_t level, std::size_t texel, bool hit) {
+  auto& map = maps_[level];
+  const auto b = texel / 64;
+  const auto bit = bitOf(texel);
+  const bool was = ((hit ? map.hidden : map.seen)[b] & bit) != 0;
+  if (was) return;
+  (hit ? map.hidden : map.seen)[b] |= bit;
+  (hit ? map.seen : map.hidden)[b] &= ~bit;
+  changed_[b] |= bit;
+  mark(b);
+}
+
+void AdaptiveVisibility::traceTile(std::size_t level, std::size_t tile, unsigned which) {
+  auto& map = maps_[level];
+  const auto& boards = sphere_.levels[level];
+  const auto first = 16 * tile;
+  const Board hits{packet_(boards.x.data() + first, boards.y.data() + first, boards.z.data() + first, which)};
+  const auto b = tile / 4, shift = 16 * (tile % 4);
+  const auto hidden = hits << shift, seen = (Board{which} & ~hits) << shift;
+  const auto changed = (hidden & ~map.hidden[b]) | (seen & ~map.seen[b]);
+  rays_ += static_cast<std::uint64_t>(std::popcount(which));
+  if (changed == 0) return;
+  map.hidden[b] = (map.hidden[b] | hidden) & ~seen;
+  map.seen[b] = (map.seen[b] | seen) & ~hidden;
+  changed_[b] |= changed;
+  mark(b);
+}
+
+void AdaptiveVisibility::traceGathered(std::size_t level) {
+  if (gathered_ == 0) return;
+  const auto hits = packet_(x_, y_, z_, (1u << gathered_) - 1u);
+  for (unsigned i = 0; i < gathered_; ++i) settle(level, texel_[i], (hits >> i & 1) != 0);
+  rays_ += gathered_;
+  gathered_ = 0;
+}
+
+void AdaptiveVisibility::refine(std::size_t level) {
+  auto& map = maps_[level];
+  const auto& boards = sphere_.levels[level];
+  const bool finest = level + 1 == maps_.size();
+  round_.clear();
+  for (std::size_t b = 0; b < boards.boardCount; ++b) {
+    if (map.side[b] != 0) round_.push_back(static_cast<std::uint32_t>(b));
+    otherSide_[b] = ~map.side[b];
+  }
+  for (bool first = true; !round_.empty(); first = false) {
+    next_.clear();
+    for (const auto b : round_) {
+      const auto seen = map.seen[b], hidden = map.hidden[b];
+      // A pair that differs with both traced is settled; most boards are of one kind, and so are those about them.
+      Board pending = map.side[b] & ~(seen | hidden);
+      if (seen != 0) pending |= seen & boards.around4(map.hidden.data(), b);
+      if (hidden != 0) pending |= hidden & boards.around4(map.seen.data(), b);
+      if (first && finest) pending |= map.side[b] & boards.around4(otherSide_.data(), b);
+      pending &= ~map.traced[b];
+      if (pending == 0) continue;
+      map.traced[b] |= pending;
+      for (std::size_t k = 0; k < 4; ++k) {
+        auto which = static_cast<unsigned>(pending >> 16 * k & 0xffffu);
+        if (std::popcount(which) >= kOwnPacket) {
+          traceTile(level, 4 * std::size_t{b} + k, which);
+          continue;
+        }
+        for (; which != 0; which &= which - 1) {
+          const auto texel = 64 * std::size_t{b} + 16 * k + static_cast<std::size_t>(std::countr_zero(which));
+          x_[gathered_] = boards.x[texel];
+          y_[gathered_] = boards.y[texel];
+          z_[gathered_] = boards.z[texel];
+          texel_[gathered_] = static_cast<std::uint32_t>(texel);
+          if (++gathered_ == 16) traceGathered(level);
+        }
+      }
+    }
+    traceGathered(level);
+    // Only beside a value that changed can there be a new pair that differs.
+    const auto count = next_.size();
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::size_t b = next_[i];
+      const auto changed = changed_[b];
+      changed_[b] = 0;
+      constexpr Board kRim = SphereBoards::rim();
+      if ((changed & kRim) == 0) continue;
+      for (const auto other : boards.beside[b]) mark(other);
+    }
+    std::ranges::sort(next_);
+    for (const auto b : next_) marked_[b] = 0;
+    std::swap(round_, next_);
+  }
+}
+
+void AdaptiveVisibility::at(int resolution, TexelBits& above, TexelBits& visible) const {
+  const auto found = std::ranges::find(sphere_.levels, resolution, &SphereBoards::resolution);
+  if (found == sphere_.levels.end()) throw std::invalid_argument("resolution: no level of the adaptive map");
+  const auto level = static_cast<std::size_t>(found - sphere_.levels.begin());
+  const auto& map = maps_[level];
+  const auto& finest = maps_.back();
+  found->toTexels(map.side, above);
+  auto bits = map.visible;
+  const auto steps = maps_.size() - 1 - level;
+  for (std::size_t b = 0; steps > 0 && b < bits.size(); ++b) {
+    const auto asked = bothSides_ ? ~Board{0} : map.side[b];
+    // Of one kind throughout, at both resolutions: most boards.
+    Board any = bits[b] & asked, all = bits[b] | ~asked;
+    for (std::size_t f = b << 2 * steps; f < (b + 1) << 2 * steps; ++f) {
+      any |= finest.visible[f];
+      all &= finest.visible[f] | (bothSides_ ? Board{0} : ~finest.side[f]);
+    }
+    if (any == 0 || all == ~Board{0}) continue;
+    for (auto left = asked; left != 0; left &= left - 1) {
+      const auto bit = static_cast<std::size_t>(std::countr_zero(left));
+      const bool sees = (bits[b] >> bit & 1) != 0;
+      bool agrees = false, finer = sees;
+      for (std::size_t corner = 0; corner < 4; ++corner) {
+        const auto fine = besideCentre(64 * b + bit, steps, corner);
+        if (!bothSides_ && (finest.side[fine / 64] & bitOf(fine)) == 0) continue;
+        finer = (finest.visible[fine / 64] & bitOf(fine)) != 0;
+        agrees = agrees || finer == sees;
+      }
+      // A ray through the centre decides, unless nothing of what it met is left at the sampling resolution.
+      if (agrees && (map.traced[b] >> bit & 1) != 0) continue;
+      bits[b] = finer ? bits[b] | Board{1} << bit : bits[b] & ~(Board{1} << bit);
+    }
+  }
+  found->toTexels(bits, visible);
+}
+
+double coveringRadius(int resolution) {
+  // The centres of the four texels that meet at a corner of the map's grid make two triangles, split along the shorter diagonal; these
+  // cover the sphere, and no point of a triangle is farther from all its vertices than the centre of its circle. One quadrant stands for all.
+  const int half = resolution / 2;
+  double worst = 0.0;
+  const auto center = [&](int i, int j) { return lobe64::octahedralTexelDirection(lobe64::octahedralWrapTexel({i, j}, resolution), resolution); };
+  const auto circle = [&](const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+    const double twiceArea = glm::length(glm::cross(b - a, c - a));
+    if (twiceArea < 1e-12) return;  // at the middle of a border side two texels meet twice
+    worst = std::max(worst, glm::distance(a, b) * glm::distance(b, c) * glm::distance(c, a) / (2.0 * twiceArea));
+  };
+  for (int j = half; j <= resolution; ++j) {
+    for (int i = half; i <= resolution; ++i) {
+      const auto a = center(i - 1, j - 1), b = center(i, j - 1), c = center(i, j), d = center(i - 1, j);
+      const bool ac = glm::distance(a, c) < glm::distance(b, d);
+      circle(a, ac ? c : b, d);
+      circle(ac ? a : d, b, c);
+    }
+  }
+  return std::asin(worst);
+}
+
+int conservativeCoarse(double angle) {
+  for (int resolution = 16; resolution <= 4096; resolution *= 2)
+    if (coveringRadius(resolution) <= 0.5 * angle) return resolution;
+  throw std::invalid_argument("angle: too small");
+}
+
+}  // namespace chiaro
