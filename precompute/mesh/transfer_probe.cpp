@@ -9,7 +9,7 @@ namespace chiaro {
 CoarseSsdf TransferProbe::trace(const Viewpoint& viewpoint, Scratch& scratch) const {
   texelsAbove(grid_, viewpoint.normal, scratch.cosine, scratch.above);
   scratch.rays += traceVisibility(rays_, grid_, viewpoint, scratch.above, scratch.visible);
-  scratch.transform(viewpoint.normal, scratch.cosine, scratch.above, scratch.visible, viewpoint.doubleSided, scratch.distances.data());
+  scratch.transform(viewpoint.normal, viewpoint.doubleSided, scratch.above, scratch.visible, scratch.above, scratch.visible, scratch.distances.data());
   CoarseSsdf ssdf(grid_.texelCount);
   for (std::size_t t = 0; t < grid_.texelCount; ++t)
     ssdf[t] = static_cast<std::int8_t>(std::lrint(127.0f / kMaxDistance * scratch.distances[grid_.rowMajor[t]]));

@@ -27,7 +27,7 @@ class TransferProbe {
   /// A thread's working memory.
   struct Scratch {
     explicit Scratch(const TransferProbe& probe)
-        : cosine(probe.grid_.texelCount), transform(probe.grid_), distances(probe.grid_.texelCount) {}
+        : cosine(probe.grid_.texelCount), transform(probe.grid_, probe.grid_), distances(probe.grid_.texelCount) {}
     AlignedFloats cosine;
     TexelBits above, visible;
     SsdfTransform transform;

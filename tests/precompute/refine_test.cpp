@@ -120,7 +120,7 @@ std::vector<double> errorsAtRandomPoints(const Scene& scene, int points) {
   const OctahedralGrid grid(64);
   const auto& primitive = scene.primitives[0];
   const auto viewpoints = viewpointsOf(scene, rays);
-  SsdfTransform transform(grid);
+  SsdfTransform transform(grid, grid);
   AlignedFloats cosine(grid.texelCount);
   TexelBits above, visible;
   std::map<std::uint32_t, std::vector<float>> ssdf;
@@ -130,7 +130,7 @@ std::vector<double> errorsAtRandomPoints(const Scene& scene, int points) {
       map.resize(grid.texelCount);
       texelsAbove(grid, viewpoints[v].normal, cosine, above);
       traceVisibility(rays, grid, viewpoints[v], above, visible);
-      transform(viewpoints[v].normal, cosine, above, visible, viewpoints[v].doubleSided, map.data());
+      transform(viewpoints[v].normal, viewpoints[v].doubleSided, above, visible, above, visible, map.data());
     }
     return map;
   };

@@ -31,12 +31,12 @@ void VertexMaps::ssdfWithHorizon(const Viewpoint& viewpoint, const TexelBits& vi
   seen_ = visible;
   for (std::size_t tile = 0; tile < grid_.tileCount; ++tile) seen_[tile] = static_cast<std::uint16_t>(seen_[tile] & above_[tile]);
   // To the transform a double-sided vertex is one without a horizon of its own: whatever differs is a boundary.
-  transform_(viewpoint.normal, cosine_, above_, seen_, true, map);
+  transform_(viewpoint.normal, true, above_, seen_, above_, seen_, map);
 }
 
 void VertexMaps::ssdfOfOccluders(const Viewpoint& viewpoint, const TexelBits& visible, float* map) {
   texelsAbove(grid_, viewpoint.normal, cosine_, above_);
-  transform_(viewpoint.normal, cosine_, above_, visible, viewpoint.doubleSided, map);
+  transform_(viewpoint.normal, viewpoint.doubleSided, above_, visible, above_, visible, map);
 }
 
 }  // namespace chiaro

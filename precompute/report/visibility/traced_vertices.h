@@ -27,7 +27,7 @@ class TracedVertices {
 /// Maps of one vertex at a time; one for each thread. Row-major texels.
 class VertexMaps {
  public:
-  explicit VertexMaps(const OctahedralGrid& grid) : grid_(grid), transform_(grid), cosine_(grid.texelCount) {}
+  explicit VertexMaps(const OctahedralGrid& grid) : grid_(grid), transform_(grid, grid), cosine_(grid.texelCount) {}
 
   /// 1 where the sphere is seen and above the horizon, else 0.
   void visibility(const Viewpoint& viewpoint, const TexelBits& visible, float* map);
