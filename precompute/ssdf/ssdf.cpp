@@ -10,7 +10,7 @@ namespace chiaro {
 namespace {
 
 // With so few points left filtering costs more than it saves: those of a group of tiles, those of one tile, those left to compare at corners.
-constexpr std::size_t kFew = 16, kFewOfTile = 32, kFewToCompare = 32;
+constexpr std::size_t kFew = 16, kFewOfTile = 40, kFewToCompare = 20;
 
 glm::vec3 fold(glm::vec3 w, glm::vec3 n) {
   const float cosine = glm::dot(w, n);
@@ -246,8 +246,9 @@ SsdfTransform::SsdfTransform(const OctahedralGrid& sampling, const OctahedralGri
   // Squares (column, row, side) of tiles. A quarter of the map holds two halves of faces, split along its diagonal; so does a square on that
   // diagonal, and another square lies within one face.
   const int tilesPerRow = storage.resolution / 4, half = tilesPerRow / 2;
+  convex_ = tilesPerRow % 2 == 0;
   std::vector<std::array<int, 3>> roots;
-  if (tilesPerRow % 2 == 0) {
+  if (convex_) {
     for (int q = 0; q < 4; ++q) roots.push_back({q % 2 * half, q / 2 * half, half});
   } else {  // the axes cut tiles
     for (int t = 0; t < tilesPerRow * tilesPerRow; ++t) roots.push_back({t % tilesPerRow, t / tilesPerRow, 1});
@@ -281,19 +282,16 @@ void SsdfTransform::addGroups(const std::vector<std::array<int, 3>>& squares) {
     glm::dvec3 sum(0.0);
     for (std::size_t j = row; j < row + side; ++j)
       for (std::size_t i = column; i < column + side; ++i) {
-        tiles_.push_back(static_cast<std::uint32_t>(j * tilesPerRow + i));
-        for (std::size_t lane = 0; lane < 16; ++lane) sum += glm::dvec3(storage_.direction(16 * std::size_t{tiles_.back()} + lane));
+        tiles_.push_back({static_cast<std::uint32_t>(j * tilesPerRow + i), storage_.rowMajor[16 * (j * tilesPerRow + i)]});
+        for (std::size_t lane = 0; lane < 16; ++lane) sum += glm::dvec3(storage_.direction(16 * std::size_t{tiles_.back().number} + lane));
       }
     group.center = glm::vec3(sum / (16.0 * static_cast<double>(side * side)));
     for (auto t = group.firstTile; t < tiles_.size(); ++t)
       for (std::size_t lane = 0; lane < 16; ++lane)
-        group.radius = std::max(group.radius, glm::distance(storage_.direction(16 * std::size_t{tiles_[t]} + lane), group.center));
+        group.radius = std::max(group.radius, glm::distance(storage_.direction(16 * std::size_t{tiles_[t].number} + lane), group.center));
     const auto first = row * tilesPerRow + column, last = first + (side - 1) * tilesPerRow;
-    group.corner[0] = storage_.direction(16 * first);
-    group.corner[1] = storage_.direction(16 * (first + side - 1) + 3);
-    group.corner[2] = storage_.direction(16 * last + 12);
-    group.corner[3] = storage_.direction(16 * (last + side - 1) + 15);
-    group.convex = tilesPerRow % 2 == 0;
+    corners_.push_back({storage_.direction(16 * first), storage_.direction(16 * (first + side - 1) + 3), storage_.direction(16 * last + 12),
+                        storage_.direction(16 * (last + side - 1) + 15)});
   }
 }
 
@@ -307,11 +305,16 @@ void SsdfTransform::keepNear(const Points& from, glm::vec3 center, float radius,
   const float *x = from.x.data(), *y = from.y.data(), *z = from.z.data(), *chord2 = chord2_.data();
   float *toX = to.x.data(), *toY = to.y.data(), *toZ = to.z.data();
   std::size_t kept = 0;
-  for (std::size_t i = 0; i < from.count; ++i) {
-    toX[kept] = x[i];
-    toY[kept] = y[i];
-    toZ[kept] = z[i];
-    kept += chord2[i] <= most2;
+  for (std::size_t i = 0; i < from.count; i += 4) {
+    // Points come in the order of the map, so that most fours go together.
+    const auto isNear = std::bit_cast<std::array<std::uint64_t, 2>>(loadVector<Float4>(chord2 + i) <= most2);
+    if ((isNear[0] | isNear[1]) == 0) continue;
+    for (std::size_t j = i; j < std::min(i + 4, from.count); ++j) {
+      toX[kept] = x[j];
+      toY[kept] = y[j];
+      toZ[kept] = z[j];
+      kept += chord2[j] <= most2;
+    }
   }
   to.count = kept;
   if (kept == 0) return;
@@ -350,19 +353,20 @@ void SsdfTransform::keepUndominated(Points& points, const glm::vec3* corners) {
   pad(points.z, kept);
 }
 
-void SsdfTransform::fill(const Group& group, const Signal& signal) {
+void SsdfTransform::fill(const Group& group, const Signal& signal) const {
   // No edge is near: one texel says what all of them see.
-  const auto texel = 16 * std::size_t{tiles_[group.firstTile]};
+  const auto texel = 16 * std::size_t{tiles_[group.firstTile].number};
   auto w = storage_.direction(texel);
   std::size_t source = texel;
   if (!signal.doubleSided && !texelBit(signal.above.data(), texel)) source = nearestAbove(storage_, signal.above, fold(w, signal.normal));
   const float value = texelBit(signal.visible.data(), source) ? clamp_ : -clamp_;
   for (auto t = group.firstTile; t < group.firstTile + group.tileCount; ++t)
-    for (std::size_t row = 0; row < 4; ++row) std::fill_n(signal.distances + storage_.rowMajor[16 * std::size_t{tiles_[t]} + 4 * row], 4, value);
+    for (int row = 0; row < 4; ++row) std::fill_n(signal.distances + tiles_[t].rowMajor + row * storage_.resolution, 4, value);
 }
 
-void SsdfTransform::visitTile(const Group& group, const Points& points, bool folded, const Signal& signal) {
-  const std::size_t tile = tiles_[group.firstTile], first = 16 * tile;
+void SsdfTransform::visitTile(const Group& group, const Points& points, bool folded, const Signal& signal) const {
+  const auto [number, rowMajor] = tiles_[group.firstTile];
+  const std::size_t tile = number, first = 16 * tile;
   const float *qx = storage_.x.data() + first, *qy = storage_.y.data() + first, *qz = storage_.z.data() + first;
   alignas(64) float angle[16], foldedX[16], foldedY[16], foldedZ[16];
   unsigned below = 0;
@@ -378,11 +382,11 @@ void SsdfTransform::visitTile(const Group& group, const Points& points, bool fol
     const auto mirrored = [&](unsigned lane) {
       return texelBit(signal.visible.data(), nearestAbove(storage_, signal.above, {qx[lane], qy[lane], qz[lane]}));
     };
-    std::uint32_t home[16];
     const float nearest = *std::min_element(angle, angle + 16);
     if (below == 0xffffu && nearest > 2.0f * group.radius + slack_) {
       seen = mirrored(0) ? 0xffffu : 0u;
     } else {
+      std::uint32_t home[16];
       texelsAt(storage_, qx, qy, qz, home);
       for (unsigned left = below; left != 0; left &= left - 1) {
         const auto lane = static_cast<unsigned>(std::countr_zero(left));
@@ -393,7 +397,7 @@ void SsdfTransform::visitTile(const Group& group, const Points& points, bool fol
   }
   for (unsigned lane = 0; lane < 16; ++lane)
     angle[lane] = std::bit_cast<float>(std::bit_cast<std::uint32_t>(angle[lane]) | (~seen >> lane & 1u) << 31);
-  for (std::size_t row = 0; row < 4; ++row) std::copy_n(angle + 4 * row, 4, signal.distances + storage_.rowMajor[first + 4 * row]);
+  for (int row = 0; row < 4; ++row) std::copy_n(angle + 4 * row, 4, signal.distances + rowMajor + row * storage_.resolution);
 }
 
 void SsdfTransform::visit(const Group& group, const Points& from, std::size_t depth, const Signal& signal) {
@@ -411,10 +415,10 @@ void SsdfTransform::visit(const Group& group, const Points& from, std::size_t de
       }
     } else {
       points = &kept;
-      if (group.childCount != 0 && kept.count > kFewToCompare && group.convex && !straddles) {
-        glm::vec3 corners[4];
-        for (int c = 0; c < 4; ++c) corners[c] = folded ? group.corner[c] - 2.0f * glm::dot(group.corner[c], signal.normal) * signal.normal : group.corner[c];
-        keepUndominated(kept, corners);
+      if (group.childCount != 0 && kept.count > kFewToCompare && convex_ && !straddles) {
+        auto corners = corners_[static_cast<std::size_t>(&group - groups_.data())];
+        for (auto& corner : corners) corner = signal.folded(corner);
+        keepUndominated(kept, corners.data());
       }
     }
   }

@@ -52,18 +52,20 @@ class SsdfTransform {
   struct Group {
     glm::vec3 center{0.0f};
     float radius = 0.0f;            ///< largest chord to one of its texels
-    glm::vec3 corner[4] = {};       ///< directions of the texels in its corners
-    bool convex = false;            ///< all its texels lie in their hull
     std::uint32_t firstTile = 0;    ///< into tiles_
     std::uint32_t tileCount = 0;
     std::uint32_t firstChild = 0;   ///< into groups_; children are consecutive, none if it is one tile
     std::uint32_t childCount = 0;
   };
+  struct Tile {
+    std::uint32_t number = 0;
+    std::uint32_t rowMajor = 0;  ///< of its first texel
+  };
   struct Signal;
   void addGroups(const std::vector<std::array<int, 3>>& squares);
   void visit(const Group& group, const Points& from, std::size_t depth, const Signal& signal);
-  void visitTile(const Group& group, const Points& points, bool folded, const Signal& signal);
-  void fill(const Group& group, const Signal& signal);
+  void visitTile(const Group& group, const Points& points, bool folded, const Signal& signal) const;
+  void fill(const Group& group, const Signal& signal) const;
   void keepNear(const Points& from, glm::vec3 center, float radius, float reach, Points& to);
   void keepUndominated(Points& points, const glm::vec3* corners);
 
@@ -73,7 +75,9 @@ class SsdfTransform {
   float slack_;                        ///< chord; texels that differ have a boundary point so near to the way between them
   std::vector<Group> groups_;
   std::uint32_t rootCount_ = 0;
-  std::vector<std::uint32_t> tiles_;   ///< of each group
+  std::vector<std::array<glm::vec3, 4>> corners_;  ///< by group; directions of the texels in its corners
+  bool convex_;                        ///< all texels of a group lie in the hull of its corners
+  std::vector<Tile> tiles_;            ///< of each group
   std::vector<glm::vec3> boundary_;
   Points all_;
   std::vector<Points> kept_;           ///< by depth
