@@ -20,8 +20,8 @@ namespace {
 constexpr std::size_t kLargestFile = 0xFFFFFFFFu;  // TinyGLTF takes 32 bit lengths
 constexpr int kDeepestNode = 512;
 
-const std::set<std::string> kSupported{"KHR_lights_punctual", "KHR_materials_emissive_strength", "KHR_materials_anisotropy",
-                                       "KHR_mesh_quantization", "CHIARO_radiance_transfer"};
+const std::set<std::string> kSupported{"KHR_lights_punctual",   "KHR_materials_emissive_strength", "KHR_materials_anisotropy",
+                                       "KHR_mesh_quantization", "KHR_texture_transform",           "CHIARO_radiance_transfer"};
 
 std::string named(const std::string& kind, int index, const std::string& name) {
   return kind + " " + std::to_string(index) + (name.empty() ? "" : " (" + name + ")");

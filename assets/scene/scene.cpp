@@ -22,6 +22,11 @@ const Material& materialOf(const Scene& scene, const Primitive& primitive) {
   return primitive.material == kNone ? kDefault : scene.materials[static_cast<std::size_t>(primitive.material)];
 }
 
+glm::mat2 TextureTransform::linear() const {
+  const float c = std::cos(rotation), s = std::sin(rotation);
+  return {glm::vec2(c, -s) * scale.x, glm::vec2(s, c) * scale.y};
+}
+
 Bounds boundsOf(const Scene& scene) {
   Bounds bounds;
   for (const auto& primitive : scene.primitives) {

@@ -341,6 +341,51 @@ TEST(GltfScene, MaterialsAndTextures) {
   EXPECT_THAT(file.error(), HasSubstr("image 0 (colour) is neither PNG nor JPEG"));
 }
 
+// KHR_texture_transform, its defaults and its own texture coordinate set.
+TEST(GltfScene, TextureTransforms) {
+  File file;
+  file.triangle();
+  test::put(file.folder / "a.png", test::tinyPng());
+  file.root["images"] = {{{"uri", "a.png"}}};
+  file.root["textures"] = {{{"source", 0}}};
+  file.root["extensionsUsed"] = {"KHR_texture_transform", "KHR_materials_anisotropy"};
+  file.root["extensionsRequired"] = {"KHR_texture_transform"};
+  const auto reference = [](const json& transform, int set = 0) {
+    return json{{"index", 0}, {"texCoord", set}, {"extensions", {{"KHR_texture_transform", transform}}}};
+  };
+  file.root["materials"] = {
+      {{"pbrMetallicRoughness",
+        {{"baseColorTexture", reference({{"offset", {0.25, -1}}, {"rotation", 0.5}, {"scale", {2, 3}}})},
+         {"metallicRoughnessTexture", reference({{"scale", {1, -1}}, {"texCoord", 0}}, 1)}}},
+       {"normalTexture", reference({{"texCoord", 1}})},
+       {"occlusionTexture", reference({{"offset", {0, 1}}})},
+       {"emissiveTexture", reference(json::object())},
+       {"extensions", {{"KHR_materials_anisotropy", {{"anisotropyTexture", reference({{"rotation", -2}})}}}}}}};
+  const Scene scene = file.load();
+  const auto& m = scene.materials[0];
+  EXPECT_EQ(m.baseColorTransform, (TextureTransform{{0.25f, -1.0f}, 0.5f, {2.0f, 3.0f}}));
+  EXPECT_EQ(m.metallicRoughnessTexture, 0) << "read through TEXCOORD_0 after all";
+  EXPECT_EQ(m.metallicRoughnessTransform.scale, glm::vec2(1, -1));
+  EXPECT_EQ(m.normalTexture, kNone) << "read through TEXCOORD_1";
+  EXPECT_EQ(m.occlusionTransform.offset, glm::vec2(0, 1));
+  EXPECT_EQ(m.emissiveTransform, TextureTransform());
+  EXPECT_EQ(m.anisotropyTransform.rotation, -2.0f);
+  EXPECT_THAT(file.warnings, ElementsAre(HasSubstr("TEXCOORD_1")));
+
+  file.root["materials"][0]["emissiveTexture"] = reference({{"offset", {1e300, 0}}});
+  EXPECT_THAT(file.error(), HasSubstr("what a float cannot hold"));
+}
+
+// Scaled first, then turned from +U towards -V, then moved: the way of Khronos' sample viewer and of KhronosGroup/glTF#1624.
+TEST(GltfScene, TextureTransformsTurnCoordinatesCounterClockwise) {
+  const TextureTransform transform{{10, 20}, 1.57079633f, {2, 3}};
+  const glm::vec2 right = transform({1, 0}), down = transform({0, 1});
+  EXPECT_LE(glm::distance(right, glm::vec2(10, 18)), 1e-5f);
+  EXPECT_LE(glm::distance(down, glm::vec2(13, 20)), 1e-5f);
+  const glm::vec2 kept(0.3f, -7.1f);
+  EXPECT_EQ(TextureTransform()(kept), kept) << "to the bit";
+}
+
 TEST(GltfScene, CamerasAndLights) {
   File file;
   file.triangle();

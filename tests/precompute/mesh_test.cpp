@@ -271,6 +271,20 @@ TEST(Tangents, FollowTheTextureAndItsUpwardDirection) {
   for (const auto& t : prepared.primitives[0].tangents) EXPECT_LE(glm::length(t - glm::vec4(-1, 0, 0, -1)), 1e-6f);
 }
 
+// A map that KHR_texture_transform turns or mirrors on the surface turns its frame along.
+TEST(Tangents, FollowTheTransformOfTheNormalMap) {
+  const auto tangentUnder = [](const TextureTransform& transform) {
+    Scene scene = sceneOf(texturedQuad());
+    scene.materials = {normalMapped()};
+    scene.materials[0].normalTransform = transform;
+    RepairReport report;
+    return prepareScene(scene, kSixtyDegrees, report).primitives[0].tangents[0];
+  };
+  // A quarter turn of the coordinates from +U to -V, up the image: the image turns the other way, its right pointing down.
+  EXPECT_LE(glm::length(tangentUnder({{5, 5}, 1.57079633f, {2, 2}}) - glm::vec4(0, -1, 0, 1)), 1e-6f);
+  EXPECT_LE(glm::length(tangentUnder({{0, 0}, 0, {-1, 1}}) - glm::vec4(-1, 0, 0, -1)), 1e-6f);
+}
+
 TEST(Tangents, SplitVerticesWhereMirroredHalvesMeet) {
   auto primitive = texturedQuad();
   primitive.positions.insert(primitive.positions.end(), {{2, 0, 0}, {2, 1, 0}});
