@@ -176,6 +176,34 @@ TEST(GltfScene, MatrixNodesAndZeroScale) {
   EXPECT_THAT(file.warnings, ElementsAre(HasSubstr("scaled to nothing")));
 }
 
+// One axis at zero: still there, with the plane's normal, on the side from which the original was seen.
+TEST(GltfScene, FlattenedMeshesStay) {
+  File file;
+  const float r = std::sqrt(0.5f);
+  const int position = file.floats({0, 0, 0, 0, 1, 1, 1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 1, 1}, "VEC3");
+  const int normal = file.floats({0, r, -r, 0, r, -r, 0, r, -r, 0, -r, r, 0, -r, r, 0, -r, r}, "VEC3");
+  file.primitive({{"attributes", {{"POSITION", position}, {"NORMAL", normal}}}});
+  file.root["nodes"][0]["scale"] = {3, 0, 2};
+  file.root["nodes"].push_back({{"children", {0}}});
+  file.root["scenes"][0]["nodes"] = {1};
+  for (const float angle : {0.0f, 0.7f, 2.0f, 3.0f}) {
+    // Turned about x after the scale, the zero is one of rounding.
+    file.root["nodes"][1]["rotation"] = {std::sin(angle / 2), 0, 0, std::cos(angle / 2)};
+    const Scene scene = file.load();
+    ASSERT_EQ(scene.primitives.size(), 1u) << angle;
+    EXPECT_THAT(file.warnings, testing::IsEmpty());
+    const auto& p = scene.primitives[0];
+    const glm::vec3 up(0, std::cos(angle), std::sin(angle));
+    expectNear(p.positions[1], 2.0f * glm::vec3(0, -std::sin(angle), std::cos(angle)));
+    for (std::size_t i = 0; i < 6; ++i) expectNear(p.normals[i], i < 3 ? up : -up);
+    expectNear(geometricNormal(p, 0), up);
+    expectNear(geometricNormal(p, 1), -up);
+  }
+  file.root["nodes"][0]["scale"] = {3, 0, 0};
+  EXPECT_THAT(file.error(), HasSubstr("no triangles"));
+  EXPECT_THAT(file.warnings, ElementsAre(HasSubstr("scaled to nothing")));
+}
+
 TEST(GltfScene, InstancesAreSeparateMeshes) {
   File file;
   file.triangle();
