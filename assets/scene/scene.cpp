@@ -4,6 +4,11 @@
 #include <cmath>
 
 namespace chiaro {
+namespace {
+
+constexpr float kSmallest = 1e-15f;  // metres; keeps a camera before a scene that is a point from becoming nothing
+
+}  // namespace
 
 std::size_t Scene::vertexCount() const {
   std::size_t count = 0;
@@ -48,7 +53,7 @@ Camera lookAt(glm::vec3 eye, glm::vec3 target, float verticalFov, const Bounds& 
   camera.verticalFov = verticalFov;
   const float radius = 0.5f * bounds.diagonal();
   const float distance = glm::length(eye - bounds.center());
-  camera.farPlane = std::max(distance + 1.1f * radius, 1e-6f);
+  camera.farPlane = std::max(distance + 1.1f * radius, kSmallest);
   camera.nearPlane = std::max(distance - 1.1f * radius, 1e-3f * camera.farPlane);
   return camera;
 }
@@ -59,7 +64,7 @@ Camera defaultCamera(const Scene& scene, float aspect) {
   const float fov = 0.7f;
   // The bounding sphere must fit the narrower of the two angles of view.
   const float half = std::atan(std::tan(0.5f * fov) * std::min(aspect, 1.0f));
-  const float distance = 0.5f * std::max(bounds.diagonal(), 1e-6f) / std::sin(half);
+  const float distance = 0.5f * std::max(bounds.diagonal(), kSmallest) / std::sin(half);
   const glm::vec3 towardsEye = glm::normalize(glm::vec3(0.5f, 0.45f, 1.0f));
   const glm::vec3 center = bounds.empty() ? glm::vec3(0) : bounds.center();
   return lookAt(center + distance * towardsEye, center, fov, bounds);

@@ -26,6 +26,13 @@ vec3 barycentricOf(uvec3 corners, vec3 p) {
   vec3 e1 = vertices[corners.y].positionU.xyz - a;
   vec3 e2 = vertices[corners.z].positionU.xyz - a;
   vec3 q = p - a;
+  // The area squared has the fourth power of a length: 0 or infinity in float for a scene of nanometres or of light seconds.
+  vec3 largest = max(abs(e1), abs(e2));
+  float size = max(largest.x, max(largest.y, largest.z));
+  if (!(size > 0.0)) return vec3(1.0, 0.0, 0.0);
+  e1 /= size;
+  e2 /= size;
+  q /= size;
   vec3 normal = cross(e1, e2);
   float scale = dot(normal, normal);
   if (!(scale > 0.0)) return vec3(1.0, 0.0, 0.0);

@@ -160,6 +160,37 @@ TEST(Renderer, EnvironmentRotatesWithTheCamera) {
   EXPECT_LE(worst, 0.05);
 }
 
+// The same picture of the same scene, whatever its unit; what a vertex holds changes over each triangle here.
+TEST(Renderer, DoesNotDependOnTheSizeOfTheScene) {
+  Scene scene = builtinScene("sphere");
+  scene.cameras.clear();  // the default one follows the scene
+  scene.materials = {material(0.8f, 0, glm::vec3(0.8f))};
+  for (auto& primitive : scene.primitives) primitive.material = 0;
+  const SgEnvironment overcast = prepareEnvironment(loadEnvironment("overcast"));
+  const auto draw = [&](float scale) {
+    BakedScene baked = unoccluded(scene);
+    for (std::size_t p = 0; p < baked.scene.primitives.size(); ++p) {
+      auto& visibility = baked.transfer.primitives[p].visibility;
+      for (std::size_t i = 0; i < visibility.size(); ++i) visibility[i] = i / 32 % 2 == 0 ? 255 : 64;
+      for (auto& position : baked.scene.primitives[p].positions) position *= scale;
+    }
+    Renderer renderer(baked);
+    renderer.setEnvironment(overcast);
+    renderer.render(defaultCamera(baked.scene, 1), smallPicture(48));
+    return renderer.readRadiance();
+  };
+  const ImageRgba expected = draw(1.0f);
+  EXPECT_GE(covered(expected), 500);
+  for (const float scale : {1e-9f, 1e9f}) {
+    const ImageRgba image = draw(scale);
+    int different = 0;
+    for (std::size_t i = 0; i < image.texels.size(); ++i)
+      different += !(std::abs(image.texels[i].g - expected.texels[i].g) <= 1e-3f && image.texels[i].a == expected.texels[i].a);
+    // Pixels on the outline, where the rounding of a position decides.
+    EXPECT_LE(different, 20) << scale;
+  }
+}
+
 TEST(Renderer, DriverHasNothingToSay) {
   const BakedScene baked = sphereOf(material(0.3f, 0, glm::vec3(0.8f)));
   Renderer renderer(baked);
