@@ -8,6 +8,7 @@
 #include <limits>
 #include <numbers>
 
+#include "assets/error.h"
 #include "assets/scene/load_scene.h"
 #include "precompute/bake.h"
 #include "precompute/mesh/half_edge.h"
@@ -239,6 +240,27 @@ TEST(PrepareScene, RepairsNormalsOfTheFile) {
   expectNothingElse(report, {.normalsRepaired = 2});
   expectUnitAndInRange(scene);
   EXPECT_LE(glm::length(scene.primitives[0].normals[0] - glm::vec3(0, 1, 0)), 1e-5f);
+}
+
+// Near the origin a scene without an area is just that, and left to the caller; far away it is said why.
+TEST(PrepareScene, SaysWhenTheOriginIsTooFar) {
+  RepairReport report;
+  const auto at = [](glm::vec3 shift) {
+    auto primitive = sphere(8, 16, 1.0f);
+    for (auto& p : primitive.positions) p += shift;
+    return sceneOf(primitive);
+  };
+  EXPECT_EQ(prepareScene(at({1e4f, 0, 0}), kSixtyDegrees, report).triangleCount(), at({}).triangleCount());
+  try {
+    prepareScene(at({0, -1e8f, 1e8f}), kSixtyDegrees, report);
+    ADD_FAILURE() << "nothing was thrown";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("too far from the origin"), std::string::npos) << error.what();
+  }
+  Primitive line;
+  line.positions = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}};
+  line.indices = {0, 1, 2};
+  EXPECT_EQ(prepareScene(sceneOf(line), kSixtyDegrees, report).triangleCount(), 0u);
 }
 
 /// A quad in the plane z = 0 facing +z, the texture upright: u to the right, v downwards.
