@@ -12,6 +12,7 @@
 #include "precompute/report/report_options.h"
 #include "precompute/report/report_page.h"
 #include "precompute/report/report_tables.h"
+#include "runtime/render/renderer.h"
 
 namespace {
 
@@ -84,6 +85,8 @@ ExitCode report(int argc, char** argv) {
   catchInterrupts();
 
   const BakedScene baked = readBakedScene(options.scene);
+  if (const std::string left = leftOut(baked.scene); !left.empty() && !options.quiet)
+    std::fprintf(stderr, "chiaro-report: warning: %s: %s, in the reference all of them\n", options.scene.c_str(), left.c_str());
   ProgressBar bar(progressStyle(options.quiet));
   const Comparisons comparisons = compareAll(baked, options, [&](const std::string& stage, double done) {
     throwIfInterrupted();

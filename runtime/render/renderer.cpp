@@ -269,6 +269,11 @@ struct Renderer::Impl {
   }
 };
 
+std::string leftOut(const Scene& scene) {
+  if (scene.lights.size() <= kMaxPunctualLights) return {};
+  return std::to_string(scene.lights.size()) + " punctual lights: only the first " + std::to_string(kMaxPunctualLights) + " are drawn";
+}
+
 Renderer::Renderer(const BakedScene& baked) : impl_(std::make_unique<Impl>(baked)) {}
 Renderer::~Renderer() = default;
 Renderer::Renderer(Renderer&&) noexcept = default;

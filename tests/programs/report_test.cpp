@@ -143,6 +143,15 @@ TEST_F(ReportPictures, LimitDecidesTheExitCode) {
   EXPECT_EQ(report(small("lenient", {"--fail-under", "5", "-q"})).code, 0);
 }
 
+TEST_F(ReportPictures, SaysWhichLampsAreLeftOut) {
+  bakeSceneOfLamps("lamps.glb", 33);
+  auto arguments = small("lamps");
+  arguments[0] = "lamps.glb";
+  const Finished run = report(arguments);
+  EXPECT_EQ(run.code, 0) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("chiaro-report: warning: lamps.glb: 33 punctual lights: only the first 32 are drawn"));
+}
+
 TEST_F(ReportPictures, QuietIsQuiet) {
   const Finished run = report(small("quiet", {"-q"}));
   EXPECT_EQ(run.code, 0);

@@ -290,6 +290,16 @@ TEST_F(ViewPictures, JsonTellsWhatWasDrawnAndWhatItCost) {
   EXPECT_EQ(passes.back().at("name"), "total");
 }
 
+TEST_F(ViewPictures, SaysWhichLampsAreLeftOut) {
+  bakeSceneOfLamps("lamps.glb", 40);
+  const std::vector<std::string> drawn{"lamps.glb", "--headless", "--size", "8x8", "-e", "white", "-o", "lamps.png"};
+  const Finished run = view(drawn);
+  EXPECT_EQ(run.code, 0);
+  EXPECT_EQ(run.err, "chiaro-view: warning: lamps.glb: 40 punctual lights: only the first 32 are drawn\n");
+  bakeSceneOfLamps("lamps.glb", 32);
+  EXPECT_EQ(view(drawn).err, "");
+}
+
 TEST_F(ViewPictures, QuietPrintsNothing) {
   const Finished run = view({kScene, "--headless", "--size", "8x8", "-e", "white", "-o", "quiet.png", "-q"});
   EXPECT_EQ(run.code, 0);
