@@ -207,8 +207,7 @@ Environment loadEnvironment(const std::string& nameOrPath) {
   if (nameOrPath == "overcast") return {nameOrPath, overcast()};
   if (nameOrPath == "windows") return {nameOrPath, windows()};
   if (nameOrPath == "white") return {nameOrPath, paint([](glm::dvec3) { return Look{glm::dvec3(1.0), 0}; })};
-  const std::filesystem::path path(nameOrPath);
-  return {path.stem().string(), readHdrImage(path)};
+  return {nameOrPath, readHdrImage(nameOrPath)};
 }
 
 float autoExposure(const Environment& environment) {

@@ -11,7 +11,7 @@ namespace chiaro {
 
 /// Equirectangular radiance (lobe/equirect.glsl): +Y up at the top row, the image centre looks along -Z.
 struct Environment {
-  std::string name;
+  std::string name;  ///< as it was asked for: a file's with its folder
   ImageRgb radiance;
 };
 

@@ -188,6 +188,11 @@ TEST_F(ViewFiles, AnUnbakedSceneIsSentToPrecompute) {
 TEST_F(ViewFiles, DamagedEnvironment) {
   writeFileAtomically("words.hdr", std::string_view("#?RADIANCE and then words"));
   expectFailure(view({kScene, "--headless", "-o", "a.png", "-e", "words.hdr"}), 3, "words.hdr");
+  if (!glIsThere()) GTEST_SKIP() << "no OpenGL 4.5 on this machine";
+  // Readable, but nothing to light with: found later, and named as the file that it is all the same.
+  std::filesystem::create_directories("skies");
+  writeExr("skies/bright.exr", ImageRgba{8, 4, std::vector<glm::vec4>(32, glm::vec4(1e32f))});
+  expectFailure(view({kScene, "--headless", "-o", "a.png", "-e", "skies/bright.exr"}), 3, "chiaro-view: skies/bright.exr: ");
 }
 
 TEST_F(ViewFiles, UnknownCameraListsThoseOfTheFile) {
