@@ -219,7 +219,9 @@ float autoExposure(const Environment& environment) {
     for (int x = 0; x < image.width; ++x) row += luminance(glm::dvec3(image.at(x, y)));
     light += row * texelSolidAngle(y, image.width, image.height);
   }
-  return light > 0.0 ? static_cast<float>(0.5 * kPi / (0.25 * light)) : 1.0f;
+  // Under less light than this an exposure no longer fits a float, nor a picture under it any screen.
+  constexpr double kLargest = 1e12;
+  return light > 0.0 ? static_cast<float>(std::min(0.5 * kPi / (0.25 * light), kLargest)) : 1.0f;
 }
 
 }  // namespace chiaro
