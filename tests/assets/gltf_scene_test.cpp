@@ -518,7 +518,7 @@ TEST(GltfScene, FilesThatAreNotThere) {
   std::filesystem::remove(file.folder / "a b.bin");
   EXPECT_THAT(errorOf([&] { loadScene(path); }), HasSubstr("not a readable glTF file"));
   EXPECT_THAT(errorOf([&] { loadScene(file.folder / "b.gltf"); }), HasSubstr("cannot open"));
-  EXPECT_THAT(errorOf([&] { loadScene(file.folder.path()); }), HasSubstr("file extension"));
+  EXPECT_THAT(errorOf([&] { loadScene(file.folder.path()); }), HasSubstr("is a folder"));
   EXPECT_THAT(errorOf([&] { loadScene(test::put(file.folder / "a.fbx", std::string("x"))); }),
               HasSubstr("unknown file extension .fbx"));
   EXPECT_THAT(errorOf([&] { loadScene(test::put(file.folder / "e.glb", std::string())); }), HasSubstr("is empty"));

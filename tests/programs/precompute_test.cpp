@@ -104,6 +104,7 @@ TEST(Precompute, NeverWritesOverItsScene) {
 
 TEST(Precompute, UnreadableInputIsOneLineAndThree) {
   expectOneLine(precompute({"missing.ply", "-o", "out.glb", "-q"}), ExitCode::unreadableInput, "missing.ply");
+  expectOneLine(precompute({"/tmp", "-o", "out.glb", "-q"}), ExitCode::unreadableInput, "/tmp: is a folder");
   std::ofstream("rubbish.glb") << "this is not a scene";
   expectOneLine(precompute({"rubbish.glb", "-o", "out.glb", "-q"}), ExitCode::unreadableInput, "rubbish.glb");
   std::ofstream("flat.obj") << "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n";

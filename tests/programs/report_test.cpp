@@ -69,7 +69,7 @@ TEST_F(ReportFiles, UsageErrors) {
       {{kScene, "-o", "r", "--metallic", "-1"}, "--metallic"},
       {{kScene, "-o", "r", "--samples", "1"}, "--samples"},
       {{kScene, "-o", "r", "--exposure", "0"}, "--exposure"},
-      {{kScene, "-o", "r", "--tone-map", "film"}, "tone map"},
+      {{kScene, "-o", "r", "--tone-map", "film"}, "--tone-map: unknown tone map \"film\""},
       {{kScene, "-o", "r", "--fail-under", "nan"}, "--fail-under"},
       {{kScene, "-o", "r", "--threads", "-1"}, "--threads"},
       {{kScene, "-o", "r", "--camera", "eye=1"}, "--camera"},
