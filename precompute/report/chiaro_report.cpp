@@ -96,6 +96,7 @@ ExitCode report(int argc, char** argv) {
 
   ReportFacts facts = factsOf(baked, options);
   facts.version = CHIARO_VERSION;
+  makeReportFolder(options);
   const std::vector<CasePictures> pictures = writePictures(comparisons, options.output);
   writeFileAtomically(options.output / "report.json", reportJson(facts, options, comparisons));
   writeFileAtomically(options.output / "report.csv", reportCsv(comparisons));

@@ -83,11 +83,13 @@ TEST_F(ReportFiles, UsageErrors) {
 
 TEST_F(ReportFiles, UnreadableAndUnwritable) {
   expectFailure(report({"missing.glb", "-o", "r", "-q"}), 3, "missing.glb");
+  EXPECT_FALSE(std::filesystem::exists("r"));
   // Before the first picture, which may take long, and before a folder is made.
   expectFailure(report({kScene, "-o", "never", "-e", "sunny", "-e", "tpyo.hdr"}), 3, "tpyo.hdr");
   EXPECT_FALSE(std::filesystem::exists("never"));
   writeFileAtomically("not_a_scene.glb", std::string_view("glTF nonsense"));
-  expectFailure(report({"not_a_scene.glb", "-o", "r", "-q"}), 3, "not_a_scene.glb");
+  expectFailure(report({"not_a_scene.glb", "-o", "r/deep/", "-q"}), 3, "not_a_scene.glb");
+  EXPECT_FALSE(std::filesystem::exists("r"));
   writeFileAtomically("a_file", std::string_view("x"));
   expectFailure(report({kScene, "-o", "a_file/report", "-q"}), 4, "a_file");
 }
