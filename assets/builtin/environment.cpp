@@ -207,8 +207,7 @@ Environment loadEnvironment(const std::string& nameOrPath) {
   if (nameOrPath == "overcast") return {nameOrPath, overcast()};
   if (nameOrPath == "windows") return {nameOrPath, windows()};
   if (nameOrPath == "white") return {nameOrPath, paint([](glm::dvec3) { return Look{glm::dvec3(1.0), 0}; })};
-  const std::filesystem::path path(nameOrPath);
-  return {path.stem().string(), readHdrImage(path)};
+  return {nameOrPath, readHdrImage(nameOrPath)};
 }
 
 float autoExposure(const Environment& environment) {
@@ -220,7 +219,9 @@ float autoExposure(const Environment& environment) {
     for (int x = 0; x < image.width; ++x) row += luminance(glm::dvec3(image.at(x, y)));
     light += row * texelSolidAngle(y, image.width, image.height);
   }
-  return light > 0.0 ? static_cast<float>(0.5 * kPi / (0.25 * light)) : 1.0f;
+  // Under less light than this an exposure no longer fits a float, nor a picture under it any screen.
+  constexpr double kLargest = 1e12;
+  return light > 0.0 ? static_cast<float>(std::min(0.5 * kPi / (0.25 * light), kLargest)) : 1.0f;
 }
 
 }  // namespace chiaro

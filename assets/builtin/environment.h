@@ -11,7 +11,7 @@ namespace chiaro {
 
 /// Equirectangular radiance (lobe/equirect.glsl): +Y up at the top row, the image centre looks along -Z.
 struct Environment {
-  std::string name;
+  std::string name;  ///< as it was asked for: a file's with its folder
   ImageRgb radiance;
 };
 
@@ -25,7 +25,7 @@ void requireEnvironment(const std::string& nameOrPath);
 Environment loadEnvironment(const std::string& nameOrPath);
 
 /// Exposure (a factor on radiance) that shows a white diffuse ball under this environment at middle brightness:
-/// 0.5 pi / (mean over normals of irradiance). 1 for a black environment.
+/// 0.5 pi / (mean over normals of irradiance), at most 1e12. 1 for a black environment.
 float autoExposure(const Environment& environment);
 
 }  // namespace chiaro

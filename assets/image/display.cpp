@@ -14,7 +14,7 @@ ToneMap toneMapFromName(const std::string& name) {
       {{"neutral", ToneMap::neutral}, {"aces", ToneMap::aces}, {"clamp", ToneMap::clamp}}};
   for (const auto& [known, toneMap] : kNames)
     if (name == known) return toneMap;
-  throw usageError("tone map " + name, "is not known", "choose neutral, aces or clamp");
+  throw usageError("--tone-map", "unknown tone map \"" + name + "\"", "give neutral, aces or clamp");
 }
 
 glm::vec3 displayColor(glm::vec3 radiance, float exposure, ToneMap toneMap) {

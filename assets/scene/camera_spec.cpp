@@ -15,6 +15,7 @@ namespace chiaro {
 namespace {
 
 constexpr float kPi = std::numbers::pi_v<float>;
+constexpr float kSmallest = 1e-15f;  // metres, for a scene that is a point
 constexpr float kPoleMargin = kPi / 180.0f;
 constexpr const char* kForms = "give auto, an index, a name, or eye=X,Y,Z,target=X,Y,Z,fov-deg=40";
 
@@ -159,7 +160,7 @@ glm::vec2 parseOrbit(const std::string& text, const std::string& option) {
 glm::vec3 orbitTarget(const Camera& camera, const Bounds& bounds) {
   const glm::vec3 center = bounds.empty() ? glm::vec3(0.0f) : bounds.center();
   const float ahead = glm::dot(eyeOf(camera) - center, backOf(camera));
-  const float radius = std::max(0.5f * bounds.diagonal(), 1e-6f);
+  const float radius = std::max(0.5f * bounds.diagonal(), kSmallest);
   return eyeOf(camera) - (ahead > 0.0f ? ahead : radius) * backOf(camera);
 }
 
@@ -185,7 +186,7 @@ Camera orbited(const Camera& camera, glm::vec3 target, float azimuth, float elev
 void fitDepthRange(Camera& camera, const Bounds& bounds) {
   const float radius = 0.5f * bounds.diagonal();
   const float distance = bounds.empty() ? 1.0f : glm::length(eyeOf(camera) - bounds.center());
-  camera.farPlane = std::max(distance + 1.1f * radius, 1e-6f);
+  camera.farPlane = std::max(distance + 1.1f * radius, kSmallest);
   camera.nearPlane = std::max(distance - 1.1f * radius, 1e-3f * camera.farPlane);
 }
 

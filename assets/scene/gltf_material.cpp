@@ -94,16 +94,16 @@ class MaterialReader {
       material.name = source.name;
       for (std::size_t c = 0; c < 4 && pbr.baseColorFactor.size() == 4; ++c)
         material.baseColorFactor[static_cast<int>(c)] = within(pbr.baseColorFactor[c], 0, 1, "baseColorFactor");
-      material.baseColorTexture = texture(pbr.baseColorTexture);
+      material.baseColorTexture = texture(pbr.baseColorTexture, material.baseColorTransform);
       material.metallicFactor = within(pbr.metallicFactor, 0, 1, "metallicFactor");
       material.roughnessFactor = within(pbr.roughnessFactor, 0, 1, "roughnessFactor");
-      material.metallicRoughnessTexture = texture(pbr.metallicRoughnessTexture);
-      material.normalTexture = texture(source.normalTexture);
+      material.metallicRoughnessTexture = texture(pbr.metallicRoughnessTexture, material.metallicRoughnessTransform);
+      material.normalTexture = texture(source.normalTexture, material.normalTransform);
       material.normalScale = static_cast<float>(source.normalTexture.scale);
-      material.occlusionTexture = texture(source.occlusionTexture);
+      material.occlusionTexture = texture(source.occlusionTexture, material.occlusionTransform);
       material.occlusionStrength = within(source.occlusionTexture.strength, 0, 1, "occlusionTexture.strength");
       readEmission(source, material);
-      material.emissiveTexture = texture(source.emissiveTexture);
+      material.emissiveTexture = texture(source.emissiveTexture, material.emissiveTransform);
       material.alphaMode = source.alphaMode == "MASK"    ? AlphaMode::mask
                            : source.alphaMode == "BLEND" ? AlphaMode::blend
                                                          : AlphaMode::opaque;
@@ -149,17 +149,34 @@ class MaterialReader {
   }
 
   template <class TextureInfo>
-  int texture(const TextureInfo& info) {
+  int texture(const TextureInfo& info, TextureTransform& transform) {
     const int index = checked(info.index, scene_.textures.size(), label_ + " names texture ");
     if (index == kNone || scene_.textures[static_cast<std::size_t>(index)].image == kNone) return kNone;
-    if (info.texCoord != 0) {
-      warnings_.say(label_ + " reads a texture through TEXCOORD_" + std::to_string(info.texCoord) +
+    const auto moved = info.extensions.find("KHR_texture_transform");
+    const bool isMoved = moved != info.extensions.end();
+    const int set = isMoved ? static_cast<int>(gltfNumber(moved->second, "texCoord", info.texCoord)) : info.texCoord;
+    if (set != 0) {
+      warnings_.say(label_ + " reads a texture through TEXCOORD_" + std::to_string(set) +
                     "; only TEXCOORD_0 is kept, so it is left out");
       return kNone;
     }
-    if (info.extensions.count("KHR_texture_transform") != 0)
-      warnings_.say(label_ + " moves a texture with KHR_texture_transform, which is ignored");
+    if (isMoved) transform = transformFrom(moved->second);
     return index;
+  }
+
+  TextureTransform transformFrom(const tinygltf::Value& value) const {
+    TextureTransform transform;
+    const auto pair = [&](const char* key, glm::vec2& out) {
+      if (!value.IsObject() || !value.Has(key) || value.Get(key).ArrayLen() != 2) return;
+      for (int c = 0; c < 2; ++c) out[c] = static_cast<float>(value.Get(key).Get(c).GetNumberAsDouble());
+    };
+    pair("offset", transform.offset);
+    pair("scale", transform.scale);
+    transform.rotation = static_cast<float>(gltfNumber(value, "rotation", 0.0));
+    const glm::vec4 all(transform.offset, transform.scale);
+    if (!std::isfinite(all.x + all.y + all.z + all.w + transform.rotation))
+      throw inputError(path_.string(), label_ + " moves a texture by what a float cannot hold", "export the file again");
+    return transform;
   }
 
   float within(double value, double lower, double upper, const char* what) {
@@ -187,10 +204,13 @@ class MaterialReader {
     material.anisotropyStrength = within(gltfNumber(value, "anisotropyStrength", 0.0), 0, 1, "anisotropyStrength");
     material.anisotropyRotation = static_cast<float>(gltfNumber(value, "anisotropyRotation", 0.0));
     if (!value.Has("anisotropyTexture")) return;
+    const auto& reference = value.Get("anisotropyTexture");
     tinygltf::TextureInfo info;
-    info.index = static_cast<int>(gltfNumber(value.Get("anisotropyTexture"), "index", -2.0));
-    info.texCoord = static_cast<int>(gltfNumber(value.Get("anisotropyTexture"), "texCoord", 0.0));
-    material.anisotropyTexture = texture(info);
+    info.index = static_cast<int>(gltfNumber(reference, "index", -2.0));
+    info.texCoord = static_cast<int>(gltfNumber(reference, "texCoord", 0.0));
+    if (reference.Has("extensions") && reference.Get("extensions").Has("KHR_texture_transform"))
+      info.extensions["KHR_texture_transform"] = reference.Get("extensions").Get("KHR_texture_transform");
+    material.anisotropyTexture = texture(info, material.anisotropyTransform);
   }
 
   const tinygltf::Model& model_;

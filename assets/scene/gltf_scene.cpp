@@ -20,8 +20,8 @@ namespace {
 constexpr std::size_t kLargestFile = 0xFFFFFFFFu;  // TinyGLTF takes 32 bit lengths
 constexpr int kDeepestNode = 512;
 
-const std::set<std::string> kSupported{"KHR_lights_punctual", "KHR_materials_emissive_strength", "KHR_materials_anisotropy",
-                                       "KHR_mesh_quantization", "CHIARO_radiance_transfer"};
+const std::set<std::string> kSupported{"KHR_lights_punctual",   "KHR_materials_emissive_strength", "KHR_materials_anisotropy",
+                                       "KHR_mesh_quantization", "KHR_texture_transform",           "CHIARO_radiance_transfer"};
 
 std::string named(const std::string& kind, int index, const std::string& name) {
   return kind + " " + std::to_string(index) + (name.empty() ? "" : " (" + name + ")");
@@ -87,6 +87,28 @@ bool isFinite(const glm::dmat4& m) {
 glm::vec3 unit(glm::dvec3 v) {
   const double squared = glm::dot(v, v);
   return std::abs(squared - 1.0) <= 1e-6 ? glm::vec3(v) : glm::vec3(v / std::sqrt(squared));
+}
+
+struct LinearPart {
+  glm::dmat3 linear;
+  glm::dmat3 cofactor;  ///< the inverse transpose times the determinant; takes normals along, and exists for every scale
+  int rank;             ///< 3, 2 for what is flattened into a plane, or 1 for less
+};
+
+LinearPart linearPart(const glm::dmat4& world) {
+  constexpr double kNothing = 1e-12;  // relative; a rotation leaves this much of a zero scale, and its sign means nothing
+  const glm::dmat3 m(world);
+  LinearPart part{m, glm::dmat3(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1])), 3};
+  const double size = std::max({glm::length(m[0]), glm::length(m[1]), glm::length(m[2])});
+  if (std::abs(glm::determinant(m)) > kNothing * size * size * size) return part;
+  const auto longer = [](const glm::dvec3& a, const glm::dvec3& b) { return glm::dot(a, a) < glm::dot(b, b); };
+  const glm::dvec3 widest = std::max({part.cofactor[0], part.cofactor[1], part.cofactor[2]}, longer);
+  part.rank = glm::length(widest) > kNothing * size * size ? 2 : 1;
+  if (part.rank == 1) return part;
+  // Every normal becomes the plane's, on the side that it was: without the rounding error that would turn those of its edges.
+  const glm::dvec3 normal = glm::normalize(widest);
+  part.cofactor = glm::outerProduct(normal, glm::transpose(part.cofactor) * normal);
+  return part;
 }
 
 /// The file's index list, or 0, 1, 2, ...; strips and fans become lists (glTF 2.0, 3.7.2.1).
@@ -169,9 +191,8 @@ class SceneReader {
     if (node.mesh < 0 || static_cast<std::size_t>(node.mesh) >= model_.meshes.size())
       throw inputError(where_, label + " names mesh " + std::to_string(node.mesh) + ", which does not exist", "export it again");
     const auto& mesh = model_.meshes[static_cast<std::size_t>(node.mesh)];
-    const double determinant = glm::determinant(glm::dmat3(world));
-    // A zero scale is how some exporters hide a node.
-    if (!(std::abs(determinant) > 0.0)) {
+    // A zero scale is how some exporters hide a node; one axis at zero is a flattened mesh, and to be seen.
+    if (linearPart(world).rank < 2) {
       warnings_.say(label + " is scaled to nothing and left out");
       return;
     }
@@ -283,11 +304,8 @@ class SceneReader {
 
   void transform(Primitive& primitive, const glm::dmat4& world, const std::string& label) {
     if (world != glm::dmat4(1.0)) {
-      const glm::dmat3 linear(world);
-      // The cofactor matrix is the inverse transpose times the determinant, and exists for every scale.
-      const glm::dmat3 cofactor(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]),
-                                glm::cross(linear[0], linear[1]));
-      const double sign = glm::determinant(linear) < 0.0 ? -1.0 : 1.0;
+      const auto [linear, cofactor, rank] = linearPart(world);
+      const double sign = rank == 3 && glm::determinant(linear) < 0.0 ? -1.0 : 1.0;
       for (auto& position : primitive.positions) position = glm::vec3(world * glm::dvec4(position, 1.0));
       for (auto& normal : primitive.normals) normal = direction(sign * (cofactor * glm::dvec3(normal)));
       for (auto& tangent : primitive.tangents)

@@ -22,6 +22,8 @@ std::string lowerCaseExtension(const std::filesystem::path& path) {
 }
 
 Scene load(const std::filesystem::path& path, const WarningHandler& warn) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored)) throw inputError(path.string(), "is a folder", "name a file");
   static const std::string kRemedy = "convert it to .gltf, .glb, .obj, .ply, .off or .stl";
   const std::string extension = lowerCaseExtension(path);
   const bool isGltf = extension == ".gltf" || extension == ".glb";

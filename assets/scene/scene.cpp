@@ -4,6 +4,11 @@
 #include <cmath>
 
 namespace chiaro {
+namespace {
+
+constexpr float kSmallest = 1e-15f;  // metres; keeps a camera before a scene that is a point from becoming nothing
+
+}  // namespace
 
 std::size_t Scene::vertexCount() const {
   std::size_t count = 0;
@@ -20,6 +25,11 @@ std::size_t Scene::triangleCount() const {
 const Material& materialOf(const Scene& scene, const Primitive& primitive) {
   static const Material kDefault{};
   return primitive.material == kNone ? kDefault : scene.materials[static_cast<std::size_t>(primitive.material)];
+}
+
+glm::mat2 TextureTransform::linear() const {
+  const float c = std::cos(rotation), s = std::sin(rotation);
+  return {glm::vec2(c, -s) * scale.x, glm::vec2(s, c) * scale.y};
 }
 
 Bounds boundsOf(const Scene& scene) {
@@ -43,7 +53,7 @@ Camera lookAt(glm::vec3 eye, glm::vec3 target, float verticalFov, const Bounds& 
   camera.verticalFov = verticalFov;
   const float radius = 0.5f * bounds.diagonal();
   const float distance = glm::length(eye - bounds.center());
-  camera.farPlane = std::max(distance + 1.1f * radius, 1e-6f);
+  camera.farPlane = std::max(distance + 1.1f * radius, kSmallest);
   camera.nearPlane = std::max(distance - 1.1f * radius, 1e-3f * camera.farPlane);
   return camera;
 }
@@ -54,7 +64,7 @@ Camera defaultCamera(const Scene& scene, float aspect) {
   const float fov = 0.7f;
   // The bounding sphere must fit the narrower of the two angles of view.
   const float half = std::atan(std::tan(0.5f * fov) * std::min(aspect, 1.0f));
-  const float distance = 0.5f * std::max(bounds.diagonal(), 1e-6f) / std::sin(half);
+  const float distance = 0.5f * std::max(bounds.diagonal(), kSmallest) / std::sin(half);
   const glm::vec3 towardsEye = glm::normalize(glm::vec3(0.5f, 0.45f, 1.0f));
   const glm::vec3 center = bounds.empty() ? glm::vec3(0) : bounds.center();
   return lookAt(center + distance * towardsEye, center, fov, bounds);

@@ -32,29 +32,46 @@ struct Texture {
   bool nearest = false;             ///< magnification without interpolation
 };
 
+/// KHR_texture_transform: scaled, then turned, then moved.
+struct TextureTransform {
+  glm::vec2 offset{0.0f};
+  float rotation = 0.0f;  ///< radians; a positive one turns the coordinates from +U towards -V, the image the other way
+  glm::vec2 scale{1.0f};
+
+  bool operator==(const TextureTransform&) const = default;
+  glm::mat2 linear() const;  ///< all but the offset
+  glm::vec2 operator()(glm::vec2 texcoord) const { return linear() * texcoord + offset; }
+};
+
 enum class AlphaMode { opaque, mask, blend };
 
 /// glTF 2.0 metallic-roughness material with KHR_materials_anisotropy; a texture is an index into Scene::textures and
-/// reads TEXCOORD_0. Colour textures are sRGB-encoded, the others linear.
+/// reads TEXCOORD_0 through the transform beside it. Colour textures are sRGB-encoded, the others linear.
 struct Material {
   std::string name;
   glm::vec4 baseColorFactor{1.0f};
   int baseColorTexture = kNone;
+  TextureTransform baseColorTransform;
   float metallicFactor = 1.0f;
   float roughnessFactor = 1.0f;          ///< perceptual roughness; alpha = roughness^2
   int metallicRoughnessTexture = kNone;  ///< G roughness, B metallic
+  TextureTransform metallicRoughnessTransform;
   int normalTexture = kNone;             ///< tangent space, +Y up (OpenGL)
+  TextureTransform normalTransform;
   float normalScale = 1.0f;
   int occlusionTexture = kNone;          ///< carried through; unused, as the transfer knows the occlusion itself
+  TextureTransform occlusionTransform;
   float occlusionStrength = 1.0f;
   glm::vec3 emissiveFactor{0.0f};        ///< times KHR_materials_emissive_strength
   int emissiveTexture = kNone;
+  TextureTransform emissiveTransform;
   AlphaMode alphaMode = AlphaMode::opaque;
   float alphaCutoff = 0.5f;
   bool doubleSided = false;
   float anisotropyStrength = 0.0f;       ///< 0..1: alpha along the rotated tangent is mix(alpha, 1, strength^2)
   float anisotropyRotation = 0.0f;       ///< radians, counter-clockwise from the tangent
   int anisotropyTexture = kNone;         ///< RG direction in [-1,1], B strength
+  TextureTransform anisotropyTransform;
 };
 
 /// One draw: an indexed triangle list with one material. Attribute arrays are empty or as long as `positions`.

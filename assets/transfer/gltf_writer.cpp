@@ -82,17 +82,18 @@ class SceneWriter {
     for (const auto& material : scene_.materials) {
       Json pbr = Json::object();
       pbr["baseColorFactor"] = list(material.baseColorFactor);
-      addTexture(pbr, "baseColorTexture", material.baseColorTexture);
+      addTexture(pbr, "baseColorTexture", material.baseColorTexture, material.baseColorTransform);
       pbr["metallicFactor"] = material.metallicFactor;
       pbr["roughnessFactor"] = material.roughnessFactor;
-      addTexture(pbr, "metallicRoughnessTexture", material.metallicRoughnessTexture);
+      addTexture(pbr, "metallicRoughnessTexture", material.metallicRoughnessTexture, material.metallicRoughnessTransform);
       Json out = Json::object();
       if (!material.name.empty()) out["name"] = material.name;
       out["pbrMetallicRoughness"] = std::move(pbr);
-      if (addTexture(out, "normalTexture", material.normalTexture)) out["normalTexture"]["scale"] = material.normalScale;
-      if (addTexture(out, "occlusionTexture", material.occlusionTexture))
+      if (addTexture(out, "normalTexture", material.normalTexture, material.normalTransform))
+        out["normalTexture"]["scale"] = material.normalScale;
+      if (addTexture(out, "occlusionTexture", material.occlusionTexture, material.occlusionTransform))
         out["occlusionTexture"]["strength"] = material.occlusionStrength;
-      addTexture(out, "emissiveTexture", material.emissiveTexture);
+      addTexture(out, "emissiveTexture", material.emissiveTexture, material.emissiveTransform);
       writeEmission(material, out);
       if (material.alphaMode == AlphaMode::mask) out["alphaMode"] = "MASK", out["alphaCutoff"] = material.alphaCutoff;
       if (material.alphaMode == AlphaMode::blend) out["alphaMode"] = "BLEND";
@@ -175,9 +176,15 @@ class SceneWriter {
  private:
   static int wrap(Wrap mode) { return mode == Wrap::repeat ? 10497 : mode == Wrap::mirroredRepeat ? 33648 : 33071; }
 
-  static bool addTexture(Json& object, const char* key, int texture) {
+  bool addTexture(Json& object, const char* key, int texture, const TextureTransform& transform) {
     if (texture == kNone) return false;
     object[key]["index"] = texture;
+    if (transform == TextureTransform()) return true;
+    use("KHR_texture_transform");
+    auto& extension = object[key]["extensions"]["KHR_texture_transform"];
+    extension["offset"] = list(transform.offset);
+    extension["rotation"] = transform.rotation;
+    extension["scale"] = list(transform.scale);
     return true;
   }
 
@@ -198,7 +205,7 @@ class SceneWriter {
     auto& extension = out["extensions"]["KHR_materials_anisotropy"];
     extension["anisotropyStrength"] = material.anisotropyStrength;
     extension["anisotropyRotation"] = material.anisotropyRotation;
-    addTexture(extension, "anisotropyTexture", material.anisotropyTexture);
+    addTexture(extension, "anisotropyTexture", material.anisotropyTexture, material.anisotropyTransform);
   }
 
   Json primitiveJson(const Primitive& primitive, const std::string& label) {

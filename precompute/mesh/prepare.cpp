@@ -1,10 +1,13 @@
+#include "assets/error.h"
 #include "precompute/bake.h"
 #include "precompute/mesh/half_edge.h"
 #include "precompute/mesh/normals.h"
 #include "precompute/mesh/tangents.h"
 #include "precompute/mesh/weld.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace chiaro {
@@ -33,6 +36,16 @@ void turnInsideOut(Primitive& primitive, RepairReport& report) {
   report.trianglesTurned += primitive.triangleCount();
 }
 
+/// A scene whose float coordinates are coarse steps over its whole size has fallen together, and its triangles with it.
+bool tooFarFromTheOrigin(const Scene& scene) {
+  constexpr float kStepsAcross = 64.0f;
+  const Bounds bounds = boundsOf(scene);
+  if (bounds.empty()) return false;
+  const glm::vec3 largest = glm::max(glm::abs(bounds.lower), glm::abs(bounds.upper));
+  const float step = std::numeric_limits<float>::epsilon() * std::max({largest.x, largest.y, largest.z});
+  return bounds.diagonal() < kStepsAcross * step;
+}
+
 }  // namespace
 
 Scene prepareScene(const Scene& scene, float creaseAngle, RepairReport& report) {
@@ -53,6 +66,9 @@ Scene prepareScene(const Scene& scene, float creaseAngle, RepairReport& report) 
     makeTangents(primitive, material, report);
   }
   std::erase_if(result.primitives, [](const Primitive& primitive) { return primitive.indices.empty(); });
+  if (result.primitives.empty() && tooFarFromTheOrigin(scene))
+    throw inputError("scene", "stands too far from the origin for coordinates in single precision, and falls together",
+                     "move it to the origin");
   return result;
 }
 

@@ -31,12 +31,14 @@ struct TextureFrame {
   bool mirrored = false;    ///< w = -1
 };
 
-TextureFrame textureFrame(const Primitive& primitive, std::size_t triangle) {
+/// `linear`: of the transform through which the map is read.
+TextureFrame textureFrame(const Primitive& primitive, const glm::dmat2& linear, std::size_t triangle) {
   const auto* i = &primitive.indices[3 * triangle];
   const glm::dvec3 p(primitive.positions[i[0]]);
   const auto e1 = glm::dvec3(primitive.positions[i[1]]) - p, e2 = glm::dvec3(primitive.positions[i[2]]) - p;
   const glm::dvec2 uv(primitive.texcoords[i[0]]);
-  const auto d1 = glm::dvec2(primitive.texcoords[i[1]]) - uv, d2 = glm::dvec2(primitive.texcoords[i[2]]) - uv;
+  const auto d1 = linear * (glm::dvec2(primitive.texcoords[i[1]]) - uv),
+             d2 = linear * (glm::dvec2(primitive.texcoords[i[2]]) - uv);
   const double determinant = d1.x * d2.y - d2.x * d1.y;
   TextureFrame frame;
   if (!(std::abs(determinant) > 0.0)) return frame;
@@ -49,14 +51,14 @@ TextureFrame textureFrame(const Primitive& primitive, std::size_t triangle) {
   return frame;
 }
 
-void computeTangents(Primitive& primitive, RepairReport& report) {
+void computeTangents(Primitive& primitive, const glm::dmat2& linear, RepairReport& report) {
   const auto vertexCount = primitive.positions.size();
   // Slot 0: w = +1, slot 1: w = -1.
   std::vector<std::array<glm::dvec3, 2>> sum(vertexCount, {glm::dvec3(0.0), glm::dvec3(0.0)});
   std::vector<std::array<bool, 2>> used(vertexCount, {false, false});
   std::vector<TextureFrame> frames(primitive.triangleCount());
   for (std::size_t t = 0; t < frames.size(); ++t) {
-    frames[t] = textureFrame(primitive, t);
+    frames[t] = textureFrame(primitive, linear, t);
     if (frames[t].tangent == glm::dvec3(0.0)) continue;
     for (std::size_t c = 0; c < 3; ++c) {
       const auto at = [&](std::size_t k) { return primitive.positions[primitive.indices[3 * t + (c + k) % 3]]; };
@@ -110,7 +112,9 @@ void makeTangents(Primitive& primitive, const Material& material, RepairReport& 
       primitive.tangents[i] = glm::vec4(perpendicular(glm::dvec3(t), primitive.normals[i]), t.w < 0.0f ? -1.0f : 1.0f);
     }
   } else if (!primitive.texcoords.empty()) {
-    computeTangents(primitive, report);
+    // A normal map turned on the surface turns its frame with it.
+    const auto& map = material.normalTexture != kNone ? material.normalTransform : material.anisotropyTransform;
+    computeTangents(primitive, glm::dmat2(map.linear()), report);
   } else {
     for (const auto& n : primitive.normals) primitive.tangents.emplace_back(anyTangent(n), 1.0f);
     report.tangentsComputed += primitive.normals.size();

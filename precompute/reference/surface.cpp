@@ -49,8 +49,9 @@ SurfaceReader::SurfaceReader(const Scene& scene) : scene_(&scene) {
   }
 }
 
-glm::dvec4 SurfaceReader::lookUp(int texture, TextureEncoding encoding, glm::vec2 texcoord) const {
-  return texture == kNone ? glm::dvec4(1.0) : glm::dvec4(textures_.at({texture, encoding}).at(texcoord));
+glm::dvec4 SurfaceReader::lookUp(int texture, const TextureTransform& transform, TextureEncoding encoding,
+                                 glm::vec2 texcoord) const {
+  return texture == kNone ? glm::dvec4(1.0) : glm::dvec4(textures_.at({texture, encoding}).at(transform(texcoord)));
 }
 
 bool SurfaceReader::isCulled(const RayHit& hit, glm::vec3 direction) const {
@@ -82,7 +83,8 @@ Surface SurfaceReader::at(const RayHit& hit, glm::dvec3 wo) const {
 
   glm::dvec3 shadingNormal = normal;
   if (material.normalTexture != kNone) {
-    glm::dvec3 mapped = 2.0 * glm::dvec3(lookUp(material.normalTexture, TextureEncoding::linear, texcoord)) - 1.0;
+    glm::dvec3 mapped =
+        2.0 * glm::dvec3(lookUp(material.normalTexture, material.normalTransform, TextureEncoding::linear, texcoord)) - 1.0;
     mapped *= glm::dvec3(material.normalScale, material.normalScale, 1.0);
     shadingNormal = directionOr(mapped.x * tangent + mapped.y * bitangent + mapped.z * normal, normal);
   }
@@ -90,7 +92,7 @@ Surface SurfaceReader::at(const RayHit& hit, glm::dvec3 wo) const {
   double anisotropy = static_cast<double>(material.anisotropyStrength);
   glm::dvec2 stretch(1.0, 0.0);
   if (material.anisotropyTexture != kNone) {
-    const glm::dvec4 value = lookUp(material.anisotropyTexture, TextureEncoding::linear, texcoord);
+    const glm::dvec4 value = lookUp(material.anisotropyTexture, material.anisotropyTransform, TextureEncoding::linear, texcoord);
     stretch = 2.0 * glm::dvec2(value) - 1.0;
     anisotropy *= value.z;
   }
@@ -104,9 +106,10 @@ Surface SurfaceReader::at(const RayHit& hit, glm::dvec3 wo) const {
   const glm::dvec3 along = perpendicularPart(stretchDirection, seen);
   surface.worldFromTangent = glm::dmat3(along, glm::cross(seen, along), seen);
 
-  const glm::dvec4 baseColor =
-      glm::dvec4(material.baseColorFactor) * lookUp(material.baseColorTexture, TextureEncoding::srgb, texcoord);
-  const glm::dvec4 metallicRoughness = lookUp(material.metallicRoughnessTexture, TextureEncoding::linear, texcoord);
+  const glm::dvec4 baseColor = glm::dvec4(material.baseColorFactor) *
+                               lookUp(material.baseColorTexture, material.baseColorTransform, TextureEncoding::srgb, texcoord);
+  const glm::dvec4 metallicRoughness =
+      lookUp(material.metallicRoughnessTexture, material.metallicRoughnessTransform, TextureEncoding::linear, texcoord);
   const double metallic = static_cast<double>(material.metallicFactor) * metallicRoughness.z;
   const double roughness = static_cast<double>(material.roughnessFactor) * metallicRoughness.y;
   const double alpha = std::clamp(roughness * roughness, kMinAlpha, 1.0);
@@ -114,8 +117,8 @@ Surface SurfaceReader::at(const RayHit& hit, glm::dvec3 wo) const {
   surface.brdf.f0 = glm::mix(glm::dvec3(0.04), glm::dvec3(baseColor), metallic);
   surface.brdf.alphaX = std::lerp(alpha, 1.0, anisotropy * anisotropy);
   surface.brdf.alphaY = alpha;
-  surface.emission =
-      glm::dvec3(material.emissiveFactor) * glm::dvec3(lookUp(material.emissiveTexture, TextureEncoding::srgb, texcoord));
+  surface.emission = glm::dvec3(material.emissiveFactor) *
+                     glm::dvec3(lookUp(material.emissiveTexture, material.emissiveTransform, TextureEncoding::srgb, texcoord));
   if (material.alphaMode == AlphaMode::blend) surface.opacity = std::clamp(baseColor.w, 0.0, 1.0);
   return surface;
 }

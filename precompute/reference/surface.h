@@ -38,7 +38,7 @@ class SurfaceReader {
 
  private:
   /// RGBA of a texture, or white without one.
-  glm::dvec4 lookUp(int texture, TextureEncoding encoding, glm::vec2 texcoord) const;
+  glm::dvec4 lookUp(int texture, const TextureTransform& transform, TextureEncoding encoding, glm::vec2 texcoord) const;
 
   const Scene* scene_;
   std::map<std::pair<int, TextureEncoding>, TextureSampler> textures_;

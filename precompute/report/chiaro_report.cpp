@@ -14,6 +14,7 @@
 #include "precompute/report/report_page.h"
 #include "precompute/report/report_tables.h"
 #include "precompute/report/visibility/visibility_report.h"
+#include "runtime/render/renderer.h"
 
 namespace {
 
@@ -88,6 +89,8 @@ ExitCode report(int argc, char** argv) {
   catchInterrupts();
 
   const BakedScene baked = readBakedScene(options.scene);
+  if (const std::string left = leftOut(baked.scene); !left.empty() && !options.quiet)
+    std::fprintf(stderr, "chiaro-report: warning: %s: %s, in the reference all of them\n", options.scene.c_str(), left.c_str());
   ProgressBar bar(progressStyle(options.quiet));
   const Comparisons comparisons = compareAll(baked, options, [&](const std::string& stage, double done) {
     throwIfInterrupted();
@@ -97,6 +100,7 @@ ExitCode report(int argc, char** argv) {
 
   ReportFacts facts = factsOf(baked, options);
   facts.version = CHIARO_VERSION;
+  makeReportFolder(options);
   const std::vector<CasePictures> pictures = writePictures(comparisons, options.output);
   writeFileAtomically(options.output / "report.json", reportJson(facts, options, comparisons));
   writeFileAtomically(options.output / "report.csv", reportCsv(comparisons));

@@ -47,6 +47,19 @@ std::string builtinNames() {
   return text;
 }
 
+Error folderError(const std::filesystem::path& folder, const std::string& reason) {
+  return outputError(folder.string(), "the folder cannot be made: " + reason, "give another one with -o");
+}
+
+/// Makes nothing: whatever else is wrong with the command leaves no empty folder behind.
+void requireFolderCanBeMade(const std::filesystem::path& folder) {
+  std::error_code ignored;
+  std::filesystem::path standing = std::filesystem::absolute(folder, ignored).lexically_normal();
+  while (!std::filesystem::exists(standing, ignored) && standing.has_relative_path()) standing = standing.parent_path();
+  if (!std::filesystem::is_directory(standing, ignored)) throw folderError(folder, standing.string() + " is not a folder");
+  requireWritable(standing / "index.html");
+}
+
 void requireShare(float value, const char* option) {
   if (!(value >= 0.0f && value <= 1.0f)) throw usageError(option, "must lie between 0 and 1", "give a number such as 0.4");
 }
@@ -111,11 +124,13 @@ void finishReportOptions(ReportOptions& options, const ReportOptionTexts& texts)
   if (options.threads < 0 || options.threads > 1024)
     throw usageError("--threads", "must lie between 0 and 1024", "give 0 for all cores");
   for (const std::string& name : options.environments) requireEnvironment(name);
+  requireFolderCanBeMade(options.output);
+}
+
+void makeReportFolder(const ReportOptions& options) {
   std::error_code failure;
   std::filesystem::create_directories(options.output, failure);
-  if (failure)
-    throw outputError(options.output.string(), "the folder cannot be made: " + failure.message(), "give another one with -o");
-  requireWritable(options.output / "index.html");
+  if (failure) throw folderError(options.output, failure.message());
 }
 
 }  // namespace chiaro

@@ -47,7 +47,10 @@ struct ReportOptionTexts {
 /// Declares every option on `app`; the two structures must outlive its parse().
 void declareReportOptions(CLI::App& app, ReportOptions& options, ReportOptionTexts& texts);
 
-/// Checks and converts what parse() left, and makes the output folder. Throws Error (usage, unwritableOutput).
+/// Checks and converts what parse() left, and that the output folder can be made. Makes nothing. Throws Error (usage,
+/// unreadableInput, unwritableOutput).
 void finishReportOptions(ReportOptions& options, const ReportOptionTexts& texts);
+/// Makes the output folder. Throws Error (unwritableOutput).
+void makeReportFolder(const ReportOptions& options);
 
 }  // namespace chiaro

@@ -36,7 +36,7 @@ Shader compile(GLenum type, const ShaderText& source) {
   glGetShaderiv(shader.id(), GL_COMPILE_STATUS, &ok);
   if (ok != GL_TRUE) {
     const std::string& name = source.files.empty() ? std::string("shader") : source.files.front();
-    throw Error(ExitCode::failed, name, "does not compile: " + mapShaderLog(shaderLog(shader.id()), source.files), "");
+    throw Error(ExitCode::failed, name, "does not compile: " + mapShaderLog(shaderLog(shader.id()), source), "");
   }
   return shader;
 }
@@ -54,12 +54,10 @@ Program Program::link(const std::vector<std::pair<GLenum, ShaderText>>& stages) 
   glGetProgramiv(program.id(), GL_LINK_STATUS, &ok);
   if (ok != GL_TRUE) {
     std::string names;
-    std::vector<std::string> files;
     for (const auto& [type, source] : stages) {
       if (!source.files.empty()) names += (names.empty() ? "" : " + ") + source.files.front();
-      if (stages.size() == 1) files = source.files;
     }
-    throw Error(ExitCode::failed, names, "does not link: " + mapShaderLog(programLog(program.id()), files), "");
+    throw Error(ExitCode::failed, names, "does not link: " + mapShaderLog(programLog(program.id()), stages.size() == 1 ? stages.front().second : ShaderText{}), "");
   }
   return program;
 }

@@ -77,18 +77,17 @@ class Resolver {
     for (std::string_view line : linesOf(text)) {
       if (directive(line, "version")) version = std::string(trimmed(line));
     }
-    out_ = version + "\n";
-    for (const std::string& define : defines) out_ += "#define " + define + "\n";
+    emit(version, {});
+    for (const std::string& define : defines) emit("#define " + define, {});
     expand(name, text, true);
-    return {std::move(out_), std::move(files_)};
+    return std::move(result_);
   }
 
  private:
   void expand(const std::string& name, std::string_view text, bool root) {
-    const std::size_t number = files_.size();
-    files_.push_back(name);
+    const std::size_t number = result_.files.size();
+    result_.files.push_back(name);
     stack_.push_back(name);
-    mark(1, number);
     CommentTracker comment;
     std::size_t lineNumber = 0;
     for (std::string_view line : linesOf(text)) {
@@ -96,15 +95,13 @@ class Resolver {
       const bool commented = comment.inside();
       comment.pass(line);
       if (commented) {
-        out_.append(line).append("\n");
+        emit(line, {number, lineNumber});
       } else if (const auto target = directive(line, "include")) {
         include(name, lineNumber, *target);
-        mark(lineNumber + 1, number);
       } else if (directive(line, "version")) {
         if (!root) throw shaderError(name, lineNumber, "#version in an included file", "remove it: only a stage file may have one");
-        out_ += "\n";
       } else {
-        out_.append(line).append("\n");
+        emit(line, {number, lineNumber});
       }
     }
     stack_.pop_back();
@@ -120,20 +117,19 @@ class Resolver {
       for (const std::string& file : stack_) path += file + " -> ";
       throw shaderError(from, line, "include cycle " + path + name, "break it by moving the shared part to a third file");
     }
-    if (std::find(files_.begin(), files_.end(), name) != files_.end()) return;
+    if (std::find(result_.files.begin(), result_.files.end(), name) != result_.files.end()) return;
     const std::optional<std::string> text = reader_(name);
     if (!text) throw shaderError(from, line, "no shader file \"" + name + "\"", "names start at the checkout root, as in \"shaders/lobe/sg.glsl\"");
     expand(name, *text, false);
   }
 
-  /// The next line of the output is line `line` of file `number`.
-  void mark(std::size_t line, std::size_t number) {
-    out_ += "#line " + std::to_string(line) + " " + std::to_string(number) + "\n";
+  void emit(std::string_view line, ShaderLine origin) {
+    result_.text.append(line).append("\n");
+    result_.lines.push_back(origin);
   }
 
   const ShaderReader& reader_;
-  std::string out_;
-  std::vector<std::string> files_;
+  ShaderText result_;
   std::vector<std::string> stack_;
 };
 
@@ -175,14 +171,16 @@ ShaderText loadShader(const std::string& name, std::span<const std::string> defi
   return resolveShader(name, readEmbeddedShader, defines);
 }
 
-std::string mapShaderLog(std::string_view log, const std::vector<std::string>& files) {
+std::string mapShaderLog(std::string_view log, const ShaderText& source) {
   static const std::regex mesa(R"(^(\d+):(\d+)\((\d+)\):\s*(.*)$)");
   static const std::regex nvidia(R"(^(\d+)\((\d+)\)\s*:\s*(.*)$)");
   static const std::regex others(R"(^(ERROR|WARNING):\s*(\d+):(\d+):\s*(.*)$)");
-  const auto fileName = [&files](const std::string& digits) {
-    std::size_t number = files.size();
-    std::from_chars(digits.data(), digits.data() + digits.size(), number);
-    return number < files.size() ? files[number] : "string " + digits;
+  const auto place = [&source](const std::string& string, const std::string& line) {
+    std::size_t number = 0;
+    std::from_chars(line.data(), line.data() + line.size(), number);
+    if (string != "0" || number == 0 || number > source.lines.size()) return "string " + string + ":" + line;
+    const ShaderLine& origin = source.lines[number - 1];
+    return origin.line == 0 ? "line " + line : source.files[origin.file] + ":" + std::to_string(origin.line);
   };
   std::string mapped;
   for (std::string_view view : linesOf(log)) {
@@ -190,11 +188,11 @@ std::string mapShaderLog(std::string_view log, const std::vector<std::string>& f
     if (line.empty() || line.front() == '\0') continue;
     std::smatch m;
     if (std::regex_match(line, m, mesa)) {
-      mapped += fileName(m[1]) + ":" + m[2].str() + ":" + m[3].str() + ": " + m[4].str();
+      mapped += place(m[1], m[2]) + ":" + m[3].str() + ": " + m[4].str();
     } else if (std::regex_match(line, m, nvidia)) {
-      mapped += fileName(m[1]) + ":" + m[2].str() + ": " + m[3].str();
+      mapped += place(m[1], m[2]) + ": " + m[3].str();
     } else if (std::regex_match(line, m, others)) {
-      mapped += fileName(m[2]) + ":" + m[3].str() + ": " + m[1].str() + ": " + m[4].str();
+      mapped += place(m[2], m[3]) + ": " + m[1].str() + ": " + m[4].str();
     } else {
       mapped += line;
     }

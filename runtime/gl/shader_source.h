@@ -11,10 +11,18 @@
 
 namespace chiaro::gl {
 
-/// A shader with its includes resolved. `files[i]` is the name behind string number i in the `#line` directives.
+/// Where a line comes from: an index into ShaderText::files, and a line counted from 1, or 0 for one that is in no file.
+struct ShaderLine {
+  std::size_t file = 0;
+  std::size_t line = 0;
+};
+
+/// A shader with its includes resolved. There are no `#line` directives in it: Mesa forgets their string number in most errors
+/// (it reports the right line of string 0), so it is `lines[i]` that says where line i + 1 comes from.
 struct ShaderText {
   std::string text;
-  std::vector<std::string> files;
+  std::vector<std::string> files{};
+  std::vector<ShaderLine> lines{};
 };
 
 /// The text of a file named from the checkout root ("shaders/lobe/sg.glsl"), or nothing when there is no such file.
@@ -37,8 +45,8 @@ ShaderText resolveShaderText(const std::string& name, std::string_view text, con
 /// resolveShader over the embedded set.
 ShaderText loadShader(const std::string& name, std::span<const std::string> defines = {});
 
-/// The driver's log with string numbers replaced by names: "shaders/lobe/sg.glsl:41: error: ...".
-/// Understands Mesa "2:41(10): ", NVIDIA "2(41) : " and the "ERROR: 2:41: " of others; other lines pass unchanged.
-std::string mapShaderLog(std::string_view log, const std::vector<std::string>& files);
+/// The driver's log of this text with names and lines of files: "shaders/lobe/sg.glsl:41: error: ...".
+/// Understands Mesa "0:41(10): ", NVIDIA "0(41) : " and the "ERROR: 0:41: " of others; other lines pass unchanged.
+std::string mapShaderLog(std::string_view log, const ShaderText& source);
 
 }  // namespace chiaro::gl

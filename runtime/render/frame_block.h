@@ -53,7 +53,9 @@ struct MaterialBlock {
   glm::vec4 surface{0.0f};
   glm::vec4 anisotropy{1.0f, 0.0f, 0.0f, 0.0f};
   glm::ivec4 textures{0};
+  glm::vec4 textureLinear[5];  // columns of a 2 x 2 matrix
+  glm::vec4 textureOffset[5];
 };
-static_assert(sizeof(MaterialBlock) == 80);
+static_assert(offsetof(MaterialBlock, textureLinear) == 80 && sizeof(MaterialBlock) == 240);
 
 }  // namespace chiaro

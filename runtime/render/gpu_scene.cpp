@@ -134,6 +134,13 @@ void GpuScene::writeMaterials() {
     if (m.emissiveTexture == kNone) present &= ~8;
     if (m.anisotropyTexture == kNone) present &= ~16;
     block.textures = glm::ivec4(present, static_cast<int>(m.alphaMode), m.doubleSided ? 1 : 0, 0);
+    const std::array<const TextureTransform*, 5> transforms{&m.baseColorTransform, &m.metallicRoughnessTransform, &m.normalTransform,
+                                                            &m.emissiveTransform, &m.anisotropyTransform};
+    for (std::size_t t = 0; t < transforms.size(); ++t) {
+      const glm::mat2 linear = transforms[t]->linear();
+      block.textureLinear[t] = glm::vec4(linear[0], linear[1]);
+      block.textureOffset[t] = glm::vec4(transforms[t]->offset, 0, 0);
+    }
     blocks.push_back(block);
   }
   materialBuffer_.write(0, std::span<const MaterialBlock>(blocks));

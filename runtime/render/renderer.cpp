@@ -18,7 +18,7 @@ namespace chiaro {
 namespace {
 
 constexpr unsigned kFlagShadows = 1;
-const std::vector<std::string> kPasses{"depth", "shade", "background", "resolve"};
+const std::vector<std::string> kPasses{"depth", "shade", "background", "blended", "resolve"};
 
 glm::mat4 projectionOf(const Camera& camera, float aspect) {
   if (camera.perspective) return glm::perspective(camera.verticalFov, aspect, camera.nearPlane, camera.farPlane);
@@ -242,10 +242,10 @@ struct Renderer::Impl {
       glDepthFunc(GL_LEQUAL);
       fullscreen(backgroundProgram);
     });
-    drawBlended(camera);
+    timed(3, [&] { drawBlended(camera); });
     glDisable(GL_DEPTH_TEST);
     glDisable(GL_CULL_FACE);
-    timed(3, [&] {
+    timed(4, [&] {
       resolved->framebuffer.bind();
       shaded->color.bind(0);
       resolveProgram.set("supersample", settings.supersample);
@@ -276,6 +276,11 @@ struct Renderer::Impl {
     if (!drawn) throw Error(ExitCode::failed, "renderer", "no frame was rendered yet", "call render first");
   }
 };
+
+std::string leftOut(const Scene& scene) {
+  if (scene.lights.size() <= kMaxPunctualLights) return {};
+  return std::to_string(scene.lights.size()) + " punctual lights: only the first " + std::to_string(kMaxPunctualLights) + " are drawn";
+}
 
 Renderer::Renderer(const BakedScene& baked) : impl_(std::make_unique<Impl>(baked)) {}
 Renderer::~Renderer() = default;

@@ -35,6 +35,9 @@ struct FrameTimings {
   std::vector<std::pair<std::string, double>> passes;
 };
 
+/// What of the scene a Renderer leaves out, in one line; empty when it draws everything.
+std::string leftOut(const Scene& scene);
+
 class Renderer {
  public:
   /// Uploads the scene; keeps no reference. Throws Error when the driver is too small for it.

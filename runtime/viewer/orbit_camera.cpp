@@ -8,6 +8,8 @@
 namespace chiaro {
 namespace {
 
+constexpr float kSmallest = 1e-15f;  // metres, for a scene that is a point
+
 glm::vec3 column(const Camera& camera, int i) { return glm::vec3(camera.worldFromCamera[i]); }
 
 }  // namespace
@@ -33,7 +35,7 @@ void OrbitCamera::pan(float right, float up) {
 
 void OrbitCamera::dolly(float steps) {
   const float factor = std::pow(1.1f, -steps);
-  const float smallest = std::max(1e-4f * bounds_.diagonal(), 1e-9f);
+  const float smallest = std::max(1e-4f * bounds_.diagonal(), kSmallest);
   const float wanted = std::max(distance() * factor, smallest);
   if (!camera_.perspective) camera_.verticalExtent = std::max(camera_.verticalExtent * factor, smallest);
   if (camera_.perspective) camera_.worldFromCamera[3] = glm::vec4(target_ + wanted * column(camera_, 2), 1.0f);
@@ -43,7 +45,7 @@ void OrbitCamera::dolly(float steps) {
 void OrbitCamera::setVerticalFov(float radians) { camera_.verticalFov = std::clamp(radians, 0.02f, 3.0f); }
 
 void OrbitCamera::frame(float aspect) {
-  const float radius = std::max(0.5f * bounds_.diagonal(), 1e-6f);
+  const float radius = std::max(0.5f * bounds_.diagonal(), kSmallest);
   target_ = bounds_.empty() ? glm::vec3(0.0f) : bounds_.center();
   const float narrow = std::min(aspect, 1.0f);
   float away = 2.0f * radius;

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cctype>
 #include <chrono>
+#include <cstdio>
 
 #include "assets/builtin/environment.h"
+#include "runtime/render/renderer.h"
 
 namespace chiaro {
 
@@ -21,6 +23,11 @@ LoadedScene loadForView(const std::filesystem::path& path, const MaterialOverrid
   loaded.fileBytes = std::filesystem::file_size(path, ignored);
   loaded.seconds = secondsNow() - start;
   return loaded;
+}
+
+void warnOfLeftOut(const LoadedScene& scene) {
+  const std::string left = leftOut(scene.baked.scene);
+  if (!left.empty()) std::fprintf(stderr, "chiaro-view: warning: %s: %s\n", scene.path.c_str(), left.c_str());
 }
 
 PreparedEnvironment prepareForView(const std::string& nameOrPath, int threads) {

@@ -21,6 +21,9 @@ struct LoadedScene {
 /// Reads and overrides. Throws Error (unreadableInput).
 LoadedScene loadForView(const std::filesystem::path& path, const MaterialOverride& materials);
 
+/// One line on standard error when the renderer will leave something of the scene out.
+void warnOfLeftOut(const LoadedScene& scene);
+
 struct PreparedEnvironment {
   std::string name;              ///< as the user gave it
   SgEnvironment light;

@@ -133,7 +133,7 @@ void finishViewOptions(ViewOptions& options, const ViewOptionTexts& texts) {
     if (value && !(*value >= 0.0f && *value <= 1.0f)) throw usageError(option, "must lie between 0 and 1", "give a number such as 0.4");
   if (options.supersample < 1 || options.supersample > 8) throw usageError("--supersample", "must lie between 1 and 8", "give a number such as 2");
   if (options.frames < 1 || options.frames > 1'000'000) throw usageError("--frames", "must lie between 1 and 1000000", "give a number such as 20");
-  if (options.threads < 0) throw usageError("--threads", "must not be negative", "give 0 for all cores");
+  if (options.threads < 0 || options.threads > 1024) throw usageError("--threads", "must lie between 0 and 1024", "give 0 for all cores");
   if (!std::isfinite(options.rotateEnvironmentDegrees)) throw usageError("--rotate-environment-deg", "is not a number", "give degrees such as 90");
   if (options.environments.empty()) options.environments = {"sunny"};
 

@@ -97,6 +97,7 @@ Camera viewCamera(const ViewOptions& options, const Scene& scene) {
 void runFrames(const ViewOptions& options, const LoadedScene& scene, const Camera& camera, const PreparedEnvironment& environment,
                const GlFacts& facts, const gl::DebugLog& log, const FrameHandler& afterFrame) {
   const RenderSettings settings = renderSettings(options, environment.exposure);
+  if (!options.quiet) warnOfLeftOut(scene);
   RunSeconds seconds;
   double start = secondsNow();
   Renderer renderer(scene.baked);

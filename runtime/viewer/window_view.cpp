@@ -89,6 +89,7 @@ class InteractiveView {
         window_(options.size, titleOf(options.scene)),
         renderer_(std::make_unique<Renderer>(loaded_.baked)),
         state_(panelFor(options, loaded_)) {
+    if (!options.quiet) warnOfLeftOut(loaded_);
     choose(0);
   }
 
@@ -287,7 +288,7 @@ class InteractiveView {
       any = true;
       guarded([&] {
         use(pendingScene_.get());
-        say("");
+        say(leftOut(loaded_.baked.scene));
       });
     }
     return any;

@@ -1,12 +1,13 @@
 #version 450 core
 #include "shaders/stage/frame.glsl"
 #include "shaders/stage/geometry.glsl"
+#include "shaders/stage/material.glsl"
 
 // Drawn without vertex attributes: gl_VertexID counts the corners of the global index list.
 out vec3 worldPosition;
 out vec3 worldNormal;
 out vec4 worldTangent;
-out vec2 texcoord;
+out vec2 texcoord[kTextures];  // by binding
 invariant gl_Position;
 
 void main() {
@@ -14,6 +15,8 @@ void main() {
   worldPosition = v.positionU.xyz;
   worldNormal = v.normalV.xyz;
   worldTangent = v.tangent;
-  texcoord = vec2(v.positionU.w, v.normalV.w);
+  vec2 uv = vec2(v.positionU.w, v.normalV.w);
+  MaterialBlock m = materials[materialIndex];
+  for (int binding = 0; binding < kTextures; ++binding) texcoord[binding] = movedTexcoord(m, binding, uv);
   gl_Position = frame.clipFromWorld * vec4(v.positionU.xyz, 1.0);
 }

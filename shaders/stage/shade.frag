@@ -8,7 +8,7 @@
 in vec3 worldPosition;
 in vec3 worldNormal;
 in vec4 worldTangent;
-in vec2 texcoord;
+in vec2 texcoord[kTextures];
 
 uniform int firstIndex;  // of this draw in the index list
 
@@ -26,6 +26,13 @@ vec3 barycentricOf(uvec3 corners, vec3 p) {
   vec3 e1 = vertices[corners.y].positionU.xyz - a;
   vec3 e2 = vertices[corners.z].positionU.xyz - a;
   vec3 q = p - a;
+  // The area squared has the fourth power of a length: 0 or infinity in float for a scene of nanometres or of light seconds.
+  vec3 largest = max(abs(e1), abs(e2));
+  float size = max(largest.x, max(largest.y, largest.z));
+  if (!(size > 0.0)) return vec3(1.0, 0.0, 0.0);
+  e1 /= size;
+  e2 /= size;
+  q /= size;
   vec3 normal = cross(e1, e2);
   float scale = dot(normal, normal);
   if (!(scale > 0.0)) return vec3(1.0, 0.0, 0.0);
@@ -48,7 +55,7 @@ Surface surfaceHere(MaterialBlock m, vec4 baseColor) {
   vec3 n = normal;
   s.bumped = hasTexture(m, kHasNormal) && framed;
   if (s.bumped) {
-    vec3 mapped = texture(normalTexture, texcoord).xyz * (255.0 / 127.0) - 128.0 / 127.0;
+    vec3 mapped = texture(normalTexture, texcoord[2]).xyz * (255.0 / 127.0) - 128.0 / 127.0;
     mapped.xy *= m.surface.z;
     n = tangent * mapped.x + bitangent * mapped.y + normal * mapped.z;
     n = dot(n, n) > 1.0e-12 ? normalize(n) : normal;
@@ -59,7 +66,7 @@ Surface surfaceHere(MaterialBlock m, vec4 baseColor) {
   float metallic = m.surface.x;
   s.roughness = m.surface.y;
   if (hasTexture(m, kHasMetallicRoughness)) {
-    vec4 texel = texture(metallicRoughnessTexture, texcoord);
+    vec4 texel = texture(metallicRoughnessTexture, texcoord[1]);
     s.roughness *= texel.g;
     metallic *= texel.b;
   }
@@ -71,7 +78,7 @@ Surface surfaceHere(MaterialBlock m, vec4 baseColor) {
   float strength = m.surface.w;
   if (strength > 0.0) {
     if (hasTexture(m, kHasAnisotropy)) {
-      vec3 texel = texture(anisotropyTexture, texcoord).xyz;
+      vec3 texel = texture(anisotropyTexture, texcoord[4]).xyz;
       vec2 local = texel.xy * (255.0 / 127.0) - 128.0 / 127.0;
       direction = vec2(m.anisotropy.x * local.x - m.anisotropy.y * local.y, m.anisotropy.y * local.x + m.anisotropy.x * local.y);
       strength *= texel.z;
@@ -95,7 +102,7 @@ vec3 signColor(float distance) {
 
 void main() {
   MaterialBlock m = materials[materialIndex];
-  vec4 baseColor = baseColorAt(m, texcoord);
+  vec4 baseColor = baseColorAt(m, texcoord[0]);
   if (m.textures.y == 1 && baseColor.a < m.emissive.w) discard;
 
   int first = firstIndex + 3 * gl_PrimitiveID;
@@ -111,7 +118,7 @@ void main() {
   else if (debugView == kDebugVisibility) radiance = vec3(broadVisibility(t, s.ng));
   else if (debugView == kDebugSsdf) radiance = signColor(ssdfAt(t, 2.0 * dot(s.n, s.wo) * s.n - s.wo));
   else {
-    radiance = shade(s, t) + m.emissive.rgb * (hasTexture(m, kHasEmissive) ? texture(emissiveTexture, texcoord).rgb : vec3(1.0));
+    radiance = shade(s, t) + m.emissive.rgb * (hasTexture(m, kHasEmissive) ? texture(emissiveTexture, texcoord[3]).rgb : vec3(1.0));
   }
   color = vec4(radiance, m.textures.y == 2 ? baseColor.a : 1.0);
 }

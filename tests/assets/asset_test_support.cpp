@@ -152,6 +152,11 @@ BakedScene sampleBake(int terms) {
   brushed.anisotropyStrength = 0.8f;
   brushed.anisotropyRotation = -1.1f;
   brushed.anisotropyTexture = 2;
+  brushed.baseColorTransform = {{0.1f, -0.2f}, 0.3f, {4.0f, 0.5f}};
+  brushed.metallicRoughnessTransform = {{0.0f, 1.0f}, 0.0f, {1.0f, -1.0f}};
+  brushed.normalTransform.rotation = -1.7f;
+  brushed.occlusionTransform.offset.x = 0.7f;
+  brushed.anisotropyTransform.scale.y = 3.3f;
   Material glass;
   glass.name = "glass";
   glass.alphaMode = AlphaMode::blend;

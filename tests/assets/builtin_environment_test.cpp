@@ -115,6 +115,9 @@ TEST(AutoExposure, ShowsAWhiteBallAtHalf) {
     for (int x = 0; x < 8; ++x) environment.radiance.at(x, y) = glm::vec3(0.0f);
   }
   EXPECT_NEAR(autoExposure(environment), 0.5f, 1e-6f);
+  // What the least .hdr texel with a mantissa of a half holds, 80 80 80 01: the inverse is above the largest float.
+  std::ranges::fill(environment.radiance.texels, glm::vec3(std::ldexp(1.0f, -128)));
+  EXPECT_EQ(autoExposure(environment), 1e12f);
   std::ranges::fill(environment.radiance.texels, glm::vec3(0.0f));
   EXPECT_EQ(autoExposure(environment), 1.0f);
 }

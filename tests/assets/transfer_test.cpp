@@ -55,6 +55,12 @@ void expectSame(const Material& a, const Material& b) {
   EXPECT_EQ(a.anisotropyStrength, b.anisotropyStrength);
   EXPECT_EQ(a.anisotropyRotation, b.anisotropyRotation);
   EXPECT_EQ(a.anisotropyTexture, b.anisotropyTexture);
+  EXPECT_EQ(a.baseColorTransform, b.baseColorTransform);
+  EXPECT_EQ(a.metallicRoughnessTransform, b.metallicRoughnessTransform);
+  EXPECT_EQ(a.normalTransform, b.normalTransform);
+  EXPECT_EQ(a.occlusionTransform, b.occlusionTransform);
+  EXPECT_EQ(a.emissiveTransform, b.emissiveTransform);
+  EXPECT_EQ(a.anisotropyTransform, b.anisotropyTransform);
 }
 
 void expectSame(const Camera& a, const Camera& b) {

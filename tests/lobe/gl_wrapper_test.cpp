@@ -47,12 +47,13 @@ TEST_F(GlWrapper, EveryLobeFileCompilesAlone) {
 TEST_F(GlWrapper, CompileErrorNamesFileAndLine) {
   const ShaderReader reader = [](const std::string& name) -> std::optional<std::string> {
     if (name == "shaders/outer.glsl") return "int before;\n#include \"shaders/inner.glsl\"\nint after;\nfloat g() { return missingOuter; }\n";
-    if (name == "shaders/inner.glsl") return "int one;\nint two;\nfloat f() { return missingInner; }\n";
+    if (name == "shaders/inner.glsl") return "int one;\nint two;\nfloat f() { return missingInner; }\nvoid k() {\n  alsoMissing;\n}\n";
     return std::nullopt;
   };
   const std::string root = "// head\n#include \"shaders/outer.glsl\"\n\nlayout(local_size_x = 1) in;\nvoid main() {}\nfloat h() { return missingRoot; }\n";
   const std::string message = linkFailure(resolveShaderText("root.comp", root, reader));
   EXPECT_THAT(message, HasSubstr("shaders/inner.glsl:3:"));
+  EXPECT_THAT(message, HasSubstr("shaders/inner.glsl:5:")) << "where Mesa forgets which string it was in";
   EXPECT_THAT(message, HasSubstr("shaders/outer.glsl:4:"));
   EXPECT_THAT(message, HasSubstr("root.comp:6:"));
   testContext().debugLog().clear();  // the driver reports the failed compile here as well

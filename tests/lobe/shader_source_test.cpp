@@ -58,9 +58,21 @@ TEST(ShaderSource, VersionIsFirstAndDefinesFollow) {
   EXPECT_EQ(added.text.rfind("#version 450 core\n", 0), 0u) << added.text;
 }
 
-TEST(ShaderSource, LineDirectivesPointBackAfterAnInclude) {
-  const ShaderText text = resolveShader("a", readerOf({{"a", "int a1;\n#include \"b\"\nint a3;\n"}, {"b", "int b1;\n"}}));
-  EXPECT_THAT(text.text, HasSubstr("#line 1 0\nint a1;\n#line 1 1\nint b1;\n#line 3 0\nint a3;\n"));
+TEST(ShaderSource, KnowsWhereEachLineComesFrom) {
+  const std::vector<std::string> defines{"COUNT 3"};
+  const ShaderText text = resolveShader("a",
+                                        readerOf({{"a", "#version 450\nint a2;\n#include \"b\"\nint a4;\n#include \"c\"\nint a6;"},
+                                                  {"b", "int b1;\n#include \"c\"\n/*\n*/ int b4;\n"},
+                                                  {"c", "\nint c2;\n"}}),
+                                        defines);
+  std::string list;
+  for (std::size_t i = 0, start = 0; i < text.lines.size(); ++i) {
+    const std::size_t end = text.text.find('\n', start);
+    ASSERT_NE(end, std::string::npos);
+    list += text.files.at(text.lines[i].file) + std::to_string(text.lines[i].line) + " " + text.text.substr(start, end - start) + "|";
+    start = end + 1;
+  }
+  EXPECT_EQ(list, "a0 #version 450|a0 #define COUNT 3|a2 int a2;|b1 int b1;|c1 |c2 int c2;|b3 /*|b4 */ int b4;|a4 int a4;|a6 int a6;|");
 }
 
 TEST(ShaderSource, RefusesACycleAndShowsIt) {
@@ -88,12 +100,14 @@ TEST(ShaderSource, LeavesCommentedIncludesAlone) {
 
 // The three shapes in which drivers write string number and line.
 TEST(ShaderSource, MapsEveryDriversLog) {
-  const std::vector<std::string> files{"root.comp", "shaders/lobe/sg.glsl"};
-  EXPECT_EQ(mapShaderLog("1:41(10): error: `x' undeclared\n", files), "shaders/lobe/sg.glsl:41:10: error: `x' undeclared\n");
-  EXPECT_EQ(mapShaderLog("1(41) : error C1503: undefined variable\n", files), "shaders/lobe/sg.glsl:41: error C1503: undefined variable\n");
-  EXPECT_EQ(mapShaderLog("ERROR: 0:7: 'x' : undeclared\n", files), "root.comp:7: ERROR: 'x' : undeclared\n");
-  EXPECT_EQ(mapShaderLog("Linking failed\n", files), "Linking failed\n");
-  EXPECT_EQ(mapShaderLog("9:1(1): error: e\n", files), "string 9:1:1: error: e\n");
+  const ShaderText text{"", {"root.comp", "shaders/lobe/sg.glsl"}, {{0, 0}, {1, 41}, {0, 7}}};
+  EXPECT_EQ(mapShaderLog("0:2(10): error: `x' undeclared\n", text), "shaders/lobe/sg.glsl:41:10: error: `x' undeclared\n");
+  EXPECT_EQ(mapShaderLog("0(2) : error C1503: undefined variable\n", text), "shaders/lobe/sg.glsl:41: error C1503: undefined variable\n");
+  EXPECT_EQ(mapShaderLog("ERROR: 0:3: 'x' : undeclared\n", text), "root.comp:7: ERROR: 'x' : undeclared\n");
+  EXPECT_EQ(mapShaderLog("0:1(1): error: e\n", text), "line 1:1: error: e\n");
+  EXPECT_EQ(mapShaderLog("0:4(1): error: e\n", text), "string 0:4:1: error: e\n");
+  EXPECT_EQ(mapShaderLog("Linking failed\n", text), "Linking failed\n");
+  EXPECT_EQ(mapShaderLog("9:1(1): error: e\n", text), "string 9:1:1: error: e\n");
 }
 
 TEST(ShaderSource, EmbedsTheLobeFiles) {

@@ -8,6 +8,7 @@
 #include <limits>
 #include <numbers>
 
+#include "assets/error.h"
 #include "assets/scene/load_scene.h"
 #include "precompute/bake.h"
 #include "precompute/mesh/half_edge.h"
@@ -241,6 +242,27 @@ TEST(PrepareScene, RepairsNormalsOfTheFile) {
   EXPECT_LE(glm::length(scene.primitives[0].normals[0] - glm::vec3(0, 1, 0)), 1e-5f);
 }
 
+// Near the origin a scene without an area is just that, and left to the caller; far away it is said why.
+TEST(PrepareScene, SaysWhenTheOriginIsTooFar) {
+  RepairReport report;
+  const auto at = [](glm::vec3 shift) {
+    auto primitive = sphere(8, 16, 1.0f);
+    for (auto& p : primitive.positions) p += shift;
+    return sceneOf(primitive);
+  };
+  EXPECT_EQ(prepareScene(at({1e4f, 0, 0}), kSixtyDegrees, report).triangleCount(), at({}).triangleCount());
+  try {
+    prepareScene(at({0, -1e8f, 1e8f}), kSixtyDegrees, report);
+    ADD_FAILURE() << "nothing was thrown";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("too far from the origin"), std::string::npos) << error.what();
+  }
+  Primitive line;
+  line.positions = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}};
+  line.indices = {0, 1, 2};
+  EXPECT_EQ(prepareScene(sceneOf(line), kSixtyDegrees, report).triangleCount(), 0u);
+}
+
 /// A quad in the plane z = 0 facing +z, the texture upright: u to the right, v downwards.
 Primitive texturedQuad() {
   Primitive primitive;
@@ -269,6 +291,20 @@ TEST(Tangents, FollowTheTextureAndItsUpwardDirection) {
   for (auto& uv : scene.primitives[0].texcoords) uv.x = 1.0f - uv.x;  // mirrored
   prepared = prepareScene(scene, kSixtyDegrees, report);
   for (const auto& t : prepared.primitives[0].tangents) EXPECT_LE(glm::length(t - glm::vec4(-1, 0, 0, -1)), 1e-6f);
+}
+
+// A map that KHR_texture_transform turns or mirrors on the surface turns its frame along.
+TEST(Tangents, FollowTheTransformOfTheNormalMap) {
+  const auto tangentUnder = [](const TextureTransform& transform) {
+    Scene scene = sceneOf(texturedQuad());
+    scene.materials = {normalMapped()};
+    scene.materials[0].normalTransform = transform;
+    RepairReport report;
+    return prepareScene(scene, kSixtyDegrees, report).primitives[0].tangents[0];
+  };
+  // A quarter turn of the coordinates from +U to -V, up the image: the image turns the other way, its right pointing down.
+  EXPECT_LE(glm::length(tangentUnder({{5, 5}, 1.57079633f, {2, 2}}) - glm::vec4(0, -1, 0, 1)), 1e-6f);
+  EXPECT_LE(glm::length(tangentUnder({{0, 0}, 0, {-1, 1}}) - glm::vec4(-1, 0, 0, -1)), 1e-6f);
 }
 
 TEST(Tangents, SplitVerticesWhereMirroredHalvesMeet) {

@@ -270,6 +270,26 @@ TEST(ReferenceTexture, WrapsAndInterpolates) {
   EXPECT_EQ(at(0.51f).x, 1.0f);
 }
 
+// Each slot reads its texture through its own transform.
+TEST(ReferenceSurface, TexturesAreReadThroughTheirTransforms) {
+  Scene scene = squareScene();
+  Material& material = scene.materials[0];
+  material.baseColorTexture = material.emissiveTexture = addTexture(scene, Image8{2, 1, {0, 0, 0, 255, 255, 255, 255, 255}});
+  scene.textures[0].nearest = true;
+  material.emissiveFactor = glm::vec3(1.0f);
+  material.emissiveTransform.offset.x = 0.5f;
+  const RayScene rays(scene);
+  const SurfaceReader reader(scene);
+  RayHit hit;
+  ASSERT_TRUE(rays.intersect({-0.5f, 0.2f, 1.0f}, {0, 0, -1}, 0.0f, 10.0f, hit));  // U = 1/4: the black texel
+  EXPECT_EQ(reader.at(hit, {0, 0, 1}).emission, glm::dvec3(1.0));
+  EXPECT_EQ(reader.at(hit, {0, 0, 1}).brdf.f0, glm::dvec3(0.0));
+  material.baseColorTransform.rotation = static_cast<float>(kPi / 2);  // V = 2/5 becomes U
+  EXPECT_EQ(reader.at(hit, {0, 0, 1}).brdf.f0, glm::dvec3(0.0));
+  material.baseColorTransform.scale.y = 2.0f;  // and 4/5
+  EXPECT_EQ(reader.at(hit, {0, 0, 1}).brdf.f0, glm::dvec3(1.0));
+}
+
 TEST(ReferenceSurface, NormalMapsTurnTowardsTheTangentAndUpTheImage) {
   Scene scene = squareScene();
   // (0.6, 0.48, 0.64): to the right and up.

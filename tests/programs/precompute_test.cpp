@@ -104,10 +104,13 @@ TEST(Precompute, NeverWritesOverItsScene) {
 
 TEST(Precompute, UnreadableInputIsOneLineAndThree) {
   expectOneLine(precompute({"missing.ply", "-o", "out.glb", "-q"}), ExitCode::unreadableInput, "missing.ply");
+  expectOneLine(precompute({"/tmp", "-o", "out.glb", "-q"}), ExitCode::unreadableInput, "/tmp: is a folder");
   std::ofstream("rubbish.glb") << "this is not a scene";
   expectOneLine(precompute({"rubbish.glb", "-o", "out.glb", "-q"}), ExitCode::unreadableInput, "rubbish.glb");
   std::ofstream("flat.obj") << "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n";
-  expectOneLine(precompute({"flat.obj", "-o", "out.glb", "-q"}), ExitCode::unreadableInput, "flat.obj");
+  expectOneLine(precompute({"flat.obj", "-o", "out.glb", "-q"}), ExitCode::unreadableInput, "flat.obj: has no triangle with an area");
+  std::ofstream("far.obj") << "v 10000000.1 0 0\nv 10000000.3 0 0\nv 10000000.3 0.2 0\nf 1 2 3\n";
+  expectOneLine(precompute({"far.obj", "-o", "out.glb", "-q"}), ExitCode::unreadableInput, "far.obj: stands too far from the origin");
   EXPECT_FALSE(std::filesystem::exists("out.glb"));
 }
 

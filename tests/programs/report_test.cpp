@@ -69,7 +69,7 @@ TEST_F(ReportFiles, UsageErrors) {
       {{kScene, "-o", "r", "--metallic", "-1"}, "--metallic"},
       {{kScene, "-o", "r", "--samples", "1"}, "--samples"},
       {{kScene, "-o", "r", "--exposure", "0"}, "--exposure"},
-      {{kScene, "-o", "r", "--tone-map", "film"}, "tone map"},
+      {{kScene, "-o", "r", "--tone-map", "film"}, "--tone-map: unknown tone map \"film\""},
       {{kScene, "-o", "r", "--fail-under", "nan"}, "--fail-under"},
       {{kScene, "-o", "r", "--threads", "-1"}, "--threads"},
       {{kScene, "-o", "r", "--camera", "eye=1"}, "--camera"},
@@ -83,11 +83,13 @@ TEST_F(ReportFiles, UsageErrors) {
 
 TEST_F(ReportFiles, UnreadableAndUnwritable) {
   expectFailure(report({"missing.glb", "-o", "r", "-q"}), 3, "missing.glb");
+  EXPECT_FALSE(std::filesystem::exists("r"));
   // Before the first picture, which may take long, and before a folder is made.
   expectFailure(report({kScene, "-o", "never", "-e", "sunny", "-e", "tpyo.hdr"}), 3, "tpyo.hdr");
   EXPECT_FALSE(std::filesystem::exists("never"));
   writeFileAtomically("not_a_scene.glb", std::string_view("glTF nonsense"));
-  expectFailure(report({"not_a_scene.glb", "-o", "r", "-q"}), 3, "not_a_scene.glb");
+  expectFailure(report({"not_a_scene.glb", "-o", "r/deep/", "-q"}), 3, "not_a_scene.glb");
+  EXPECT_FALSE(std::filesystem::exists("r"));
   writeFileAtomically("a_file", std::string_view("x"));
   expectFailure(report({kScene, "-o", "a_file/report", "-q"}), 4, "a_file");
 }
@@ -141,6 +143,15 @@ TEST_F(ReportPictures, LimitDecidesTheExitCode) {
   expectFailure(strict, 5, "under the limit");
   EXPECT_TRUE(std::filesystem::exists("strict/index.html"));  // to look at what failed
   EXPECT_EQ(report(small("lenient", {"--fail-under", "5", "-q"})).code, 0);
+}
+
+TEST_F(ReportPictures, SaysWhichLampsAreLeftOut) {
+  bakeSceneOfLamps("lamps.glb", 33);
+  auto arguments = small("lamps");
+  arguments[0] = "lamps.glb";
+  const Finished run = report(arguments);
+  EXPECT_EQ(run.code, 0) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("chiaro-report: warning: lamps.glb: 33 punctual lights: only the first 32 are drawn"));
 }
 
 TEST_F(ReportPictures, QuietIsQuiet) {

@@ -136,13 +136,28 @@ Finished runProgram(const std::string& program, const std::vector<std::string>& 
   return finished;
 }
 
-void bakeSmallScene(const std::filesystem::path& path) {
+namespace {
+
+void bakeCoarsely(const Scene& scene, const std::filesystem::path& path) {
   BakeSettings settings;
   settings.resolution = 16;
   settings.terms = 8;
   settings.directionCount = 8;
   BakeReport report;
-  writeBakedScene(path, bake(smallScene(), settings, report), "view tests");
+  writeBakedScene(path, bake(scene, settings, report), "view tests");
+}
+
+}  // namespace
+
+void bakeSmallScene(const std::filesystem::path& path) { bakeCoarsely(smallScene(), path); }
+
+void bakeSceneOfLamps(const std::filesystem::path& path, int count) {
+  Scene scene = smallScene();
+  Light lamp;
+  lamp.type = LightType::point;
+  lamp.position = glm::vec3(0, 3, 0);
+  scene.lights.assign(static_cast<std::size_t>(count), lamp);
+  bakeCoarsely(scene, path);
 }
 
 int worstDifference(const Image8& a, const Image8& b) {

@@ -24,6 +24,9 @@ Finished runProgram(const std::string& program, const std::vector<std::string>& 
 // A box on a floor with two cameras and two materials, baked coarsely; written to `path`.
 void bakeSmallScene(const std::filesystem::path& path);
 
+// The same scene under `count` lamps.
+void bakeSceneOfLamps(const std::filesystem::path& path, int count);
+
 // Largest difference of two pictures' channels in 1/255; a difference in size is 256.
 int worstDifference(const Image8& a, const Image8& b);
 

@@ -115,7 +115,7 @@ TEST(ViewProgram, WrongUsageIsToldBeforeAnyWork) {
       {{"--headless", "-o", "a.png", "--orbit", "10"}, "--orbit"},
       {{"--headless", "-o", "a.png", "--exposure", "-1"}, "--exposure"},
       {{"--headless", "-o", "a.png", "--exposure", "nan"}, "--exposure"},
-      {{"--headless", "-o", "a.png", "--tone-map", "filmic"}, "filmic"},
+      {{"--headless", "-o", "a.png", "--tone-map", "filmic"}, "--tone-map: unknown tone map \"filmic\""},
       {{"--headless", "-o", "a.png", "--debug-view", "depth"}, "--debug-view"},
       {{"--headless", "-o", "a.png", "--supersample", "9"}, "--supersample"},
       {{"--headless", "-o", "a.png", "--supersample", "two"}, "--supersample"},
@@ -123,6 +123,7 @@ TEST(ViewProgram, WrongUsageIsToldBeforeAnyWork) {
       {{"--headless", "-o", "a.png", "--roughness", "1.5"}, "--roughness"},
       {{"--headless", "-o", "a.png", "--metallic", "nan"}, "--metallic"},
       {{"--headless", "-o", "a.png", "--threads", "-1"}, "--threads"},
+      {{"--headless", "-o", "a.png", "--threads", "100000"}, "--threads"},
       {{"--headless", "-o", "a.png", "--rotate-environment-deg", "inf"}, "--rotate-environment-deg"},
       {{"--headless", "-o", "a.jpg"}, "a.jpg"},
       {{"--headless"}, "--output"},
@@ -188,6 +189,11 @@ TEST_F(ViewFiles, AnUnbakedSceneIsSentToPrecompute) {
 TEST_F(ViewFiles, DamagedEnvironment) {
   writeFileAtomically("words.hdr", std::string_view("#?RADIANCE and then words"));
   expectFailure(view({kScene, "--headless", "-o", "a.png", "-e", "words.hdr"}), 3, "words.hdr");
+  if (!glIsThere()) GTEST_SKIP() << "no OpenGL 4.5 on this machine";
+  // Readable, but nothing to light with: found later, and named as the file that it is all the same.
+  std::filesystem::create_directories("skies");
+  writeExr("skies/bright.exr", ImageRgba{8, 4, std::vector<glm::vec4>(32, glm::vec4(1e32f))});
+  expectFailure(view({kScene, "--headless", "-o", "a.png", "-e", "skies/bright.exr"}), 3, "chiaro-view: skies/bright.exr: ");
 }
 
 TEST_F(ViewFiles, UnknownCameraListsThoseOfTheFile) {
@@ -288,6 +294,16 @@ TEST_F(ViewPictures, JsonTellsWhatWasDrawnAndWhatItCost) {
     EXPECT_LE(time.at("median").get<double>(), time.at("max").get<double>());
   }
   EXPECT_EQ(passes.back().at("name"), "total");
+}
+
+TEST_F(ViewPictures, SaysWhichLampsAreLeftOut) {
+  bakeSceneOfLamps("lamps.glb", 40);
+  const std::vector<std::string> drawn{"lamps.glb", "--headless", "--size", "8x8", "-e", "white", "-o", "lamps.png"};
+  const Finished run = view(drawn);
+  EXPECT_EQ(run.code, 0);
+  EXPECT_EQ(run.err, "chiaro-view: warning: lamps.glb: 40 punctual lights: only the first 32 are drawn\n");
+  bakeSceneOfLamps("lamps.glb", 32);
+  EXPECT_EQ(view(drawn).err, "");
 }
 
 TEST_F(ViewPictures, QuietPrintsNothing) {
