@@ -29,10 +29,10 @@ inline constexpr std::uint32_t kTransferVersion = 1;
 struct PrimitiveTransfer {
   /// Global form: #vertices by `Transfer::paddedTerms`, row-major: weight k = weightScale[k] * value / 32767. Padding is 0.
   std::vector<std::int16_t> weights;
-  /// Clustered form; then `weights` is empty.
-  ClusteredVertices clustered;
   /// #vertices by `Transfer::directionCount`, row-major: visible fraction = value / 255.
   std::vector<std::uint8_t> visibility;
+  /// Clustered form; then `weights` is empty.
+  ClusteredVertices clustered;
 };
 
 struct Transfer {

@@ -207,7 +207,7 @@ BakedScene tinyBake() {
   t.mean = {0.5f, 1.0f, 1.5f, -0.25f};
   t.eigenfunctions = {0.5f, -0.5f, 0.25f, 1.0f};
   t.weightScale = {2.0f};
-  t.primitives = {{{32767, 0, 0, 0, -32767, 0, 0, 0, 1, 0, 0, 0}, {255, 0, 128, 1, 2, 3, 4, 5, 6, 7, 8, 9}}};
+  t.primitives = {{{32767, 0, 0, 0, -32767, 0, 0, 0, 1, 0, 0, 0}, {255, 0, 128, 1, 2, 3, 4, 5, 6, 7, 8, 9}, {}}};
   baked.facts = {{"settings.terms", 1}};
   return baked;
 }

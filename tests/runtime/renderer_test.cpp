@@ -27,7 +27,7 @@ BakedScene unoccluded(Scene scene, std::uint8_t visibility = 255) {
     const float z = 1.0f - (2.0f * static_cast<float>(i) + 1.0f) / 32.0f, s = std::sqrt(1.0f - z * z), phi = static_cast<float>(i) * 2.39996323f;
     t.directions.emplace_back(s * std::cos(phi), s * std::sin(phi), z);
   }
-  for (const auto& primitive : baked.scene.primitives) t.primitives.push_back({{}, std::vector<std::uint8_t>(primitive.positions.size() * 32, visibility)});
+  for (const auto& primitive : baked.scene.primitives) t.primitives.push_back({{}, std::vector<std::uint8_t>(primitive.positions.size() * 32, visibility), {}});
   return baked;
 }
 
