@@ -40,6 +40,16 @@ void requireValid(const BakeSettings& settings) {
   if (settings.resolution % 4 != 0) throw usageError("resolution", "is not a multiple of 4", "use 32, 64, 128, ...");
   if (settings.directionCount % 4 != 0) throw usageError("directions", "is not a multiple of 4", "use 16, 32, 64, ...");
   if (!(settings.directionSharpness > 0.0f)) throw usageError("direction sharpness", "is not positive", "use 32");
+  if (settings.compression == Compression::pca) return;
+  requireRange("clusters", settings.clusters, 0, 4096);
+  requireRange("functions", settings.functions, 0, 1024);
+  if (settings.resolution % 8 != 0) throw usageError("resolution", "is not a multiple of 8", "use 32, 64, 128, ...");
+  const int times = settings.samplingResolution / settings.resolution;
+  if (settings.samplingResolution > 1024 || times < 1 || (times & (times - 1)) != 0 || times * settings.resolution != settings.samplingResolution)
+    throw usageError("sample resolution", "is not the resolution times a power of two, 1024 at most", "use 64, 128 or 256 with 64");
+  if (settings.weightBits != 8 && settings.weightBits != 16) throw usageError("weight bits", "are neither 8 nor 16", "use 8");
+  const int bits = settings.functionBits;
+  if (bits != 0 && bits != 4 && bits != 8 && bits != 16) throw usageError("function bits", "are none of 0, 4, 8 and 16", "use 0");
 }
 
 /// What the first stage leaves behind for every vertex of the scene.
@@ -120,6 +130,7 @@ void storeFractions(const Traced& traced, const Scene& scene, Transfer& transfer
 TransferFacts factsOf(const BakeSettings& settings, const BakeReport& report) {
   TransferFacts facts{
       {"settings.resolution", settings.resolution},
+      {"settings.sample_resolution", settings.samplingResolution},
       {"settings.terms", settings.terms},
       {"settings.directions", settings.directionCount},
       {"settings.direction_sharpness", static_cast<double>(settings.directionSharpness)},
@@ -134,8 +145,21 @@ TransferFacts factsOf(const BakeSettings& settings, const BakeReport& report) {
 
 }  // namespace
 
-BakedScene bake(const Scene& scene, const BakeSettings& settings, BakeReport& report, const ProgressHandler& progress) {
+BakeSettings resolvedSettings(const BakeSettings& given) {
+  BakeSettings settings = given;
+  const bool global = settings.compression == Compression::pca;
+  if (settings.terms == 0) settings.terms = global ? 48 : 24;
+  if (global) settings.samplingResolution = settings.resolution;
+  if (settings.samplingResolution == 0) {
+    settings.samplingResolution = settings.resolution;
+    for (int i = 0; i < 2 && 2 * settings.samplingResolution <= 256; ++i) settings.samplingResolution *= 2;
+  }
   requireValid(settings);
+  return settings;
+}
+
+BakedScene bake(const Scene& scene, const BakeSettings& given, BakeReport& report, const ProgressHandler& progress) {
+  const auto settings = resolvedSettings(given);
   const auto start = Clock::now();
   const auto stage = [&](const std::string& name) {
     return [&progress, name](double done) {

@@ -20,10 +20,12 @@ enum class Compression {
 };
 
 struct BakeSettings {
-  Compression compression = Compression::pca;
+  Compression compression = Compression::joint;
   int resolution = 64;              ///< octahedral texels a side of the traced and stored sphere, 16..256
-  int samplingResolution = 0;       ///< of what is traced: `resolution` times a power of two; 0: the same
-  int terms = 48;                   ///< PCA terms, 1..256 (fewer are kept when the scene needs fewer); clustered: the most a lookup fetches
+  /// Of what is traced where visibility changes: `resolution` times a power of two; 0: four times `resolution`, at most 256. The pca form
+  /// traces `resolution`.
+  int samplingResolution = 0;
+  int terms = 0;                    ///< weights a lookup fetches at most, 1..256 (fewer where fewer do); 0: 24, or 48 in the pca form
   int clusters = 0;                 ///< clustered forms: 1..4096; 0: by the number of vertices
   int functions = 0;                ///< clustered forms: that all clusters share, 1..1024; 0: by the number of vertices
   int weightBits = 8;               ///< clustered forms: 8 or 16

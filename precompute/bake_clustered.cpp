@@ -126,7 +126,7 @@ void bakeClustered(const RayScene& rays, const std::vector<Viewpoint>& viewpoint
   auto& transfer = baked.transfer;
   const bool joint = settings.compression == Compression::joint;
   const TransferRows::Layout layout{.resolution = settings.resolution,
-                              .samplingResolution = settings.samplingResolution == 0 ? settings.resolution : settings.samplingResolution,
+                              .samplingResolution = settings.samplingResolution,
                               .clamp = joint ? kJointClamp : kMaxDistance,
                               .levels = joint ? kLevels : std::vector<VisibilityLevel>{},
                               .directions = transfer.directions,

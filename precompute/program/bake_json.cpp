@@ -6,6 +6,18 @@
 #include <numbers>
 
 namespace chiaro {
+namespace {
+
+const char* nameOf(Compression compression) {
+  switch (compression) {
+    case Compression::pca: return "pca";
+    case Compression::clustered: return "clustered";
+    case Compression::joint: return "joint";
+  }
+  return "";
+}
+
+}  // namespace
 
 std::string bakeJson(const BakeRun& run, const BakeReport& report) {
   using Json = nlohmann::ordered_json;
@@ -55,7 +67,13 @@ std::string bakeJson(const BakeRun& run, const BakeReport& report) {
         {"rays_traced", refinement.raysTraced}}},
       {"settings",
        {{"resolution", run.settings.resolution},
+        {"compression", nameOf(run.settings.compression)},
+        {"sample_resolution", run.settings.samplingResolution},
         {"terms", run.settings.terms},
+        {"clusters", run.settings.clusters},
+        {"functions", run.settings.functions},
+        {"weight_bits", run.settings.weightBits},
+        {"function_bits", run.settings.functionBits},
         {"directions", run.settings.directionCount},
         {"direction_sharpness", run.settings.directionSharpness},
         {"crease_angle_deg", static_cast<double>(run.settings.creaseAngle) * 180.0 / std::numbers::pi},

@@ -63,9 +63,9 @@ void declare(CLI::App& app, Options& options) {
   shown(app.add_option("--function-bits", settings.functionBits, "Bits of a function's values: 16, 8, 4, or 0 for 8 and 4 by what each is worth"), "N");
   shown(app.add_option("--resolution", settings.resolution, "Texels a side of the octahedral sphere, 16 to 256, a multiple of 4"), "N");
   shown(app.add_option("--sample-resolution", settings.samplingResolution,
-                       "Texels a side that are traced where visibility changes: --resolution times a power of two; 0 is the same"),
+                       "Texels a side traced where visibility changes: --resolution times a power of two; 0 is four times, at most 256"),
         "N");
-  shown(app.add_option("--terms", settings.terms, "Principal components kept, 1 to 256"), "K");
+  shown(app.add_option("--terms", settings.terms, "Weights a lookup fetches at most, 1 to 256; 0 is 24, or 48 with pca"), "K");
   shown(app.add_option("--directions", settings.directionCount, "Broad lobes a vertex, 8 to 64, a multiple of 4"), "N");
   shown(app.add_option("--crease-angle-deg", options.creaseAngleDegrees,
                        "Where a file has no normals, edges bent by more than this stay sharp, 0 to 180"),
@@ -96,7 +96,7 @@ void finish(Options& options) {
     throw usageError(name, "is out of range", range);
   };
   inRange("--resolution", settings.resolution, 16, 256);
-  inRange("--terms", settings.terms, 1, 256);
+  inRange("--terms", settings.terms, 0, 256);
   inRange("--directions", settings.directionCount, 8, 64);
   inRange("--crease-angle-deg", options.creaseAngleDegrees, 0, 180);
   inRange("--refine", static_cast<double>(settings.refine.error), 0, 1);
@@ -104,6 +104,7 @@ void finish(Options& options) {
   inRange("--threads", settings.threads, 0, 1024);
   if (settings.resolution % 4 != 0) throw usageError("--resolution", "is not a multiple of 4", "use 32, 64, 128, ...");
   if (settings.directionCount % 4 != 0) throw usageError("--directions", "is not a multiple of 4", "use 16, 32, 64, ...");
+  settings = resolvedSettings(settings);
   settings.creaseAngle = static_cast<float>(options.creaseAngleDegrees * std::numbers::pi / 180.0);
 
   if (options.output.extension() != ".glb")

@@ -17,7 +17,7 @@
 namespace chiaro {
 namespace {
 
-constexpr BakeSettings kCoarse{.resolution = 16, .terms = 24, .directionCount = 16};
+constexpr BakeSettings kCoarse{.compression = Compression::pca, .resolution = 16, .terms = 24, .directionCount = 16};
 
 std::vector<std::uint8_t> bytesOf(const BakedScene& baked, const std::string& name) {
   writeBakedScene(name, baked, "bake test");
@@ -62,9 +62,9 @@ TEST(Bake, SaysHowGoodItIs) {
 TEST(Bake, MoreTermsAndTexelsAreBetter) {
   std::map<std::string, double> coarse, fine;
   BakeReport report;
-  bake(boxesOnFloor(8), {.resolution = 16, .terms = 4, .directionCount = 8}, report);
+  bake(boxesOnFloor(8), {.compression = Compression::pca, .resolution = 16, .terms = 4, .directionCount = 8}, report);
   coarse = errorsOf(report);
-  bake(boxesOnFloor(8), {.resolution = 64, .terms = 64, .directionCount = 8}, report);
+  bake(boxesOnFloor(8), {.compression = Compression::pca, .resolution = 64, .terms = 64, .directionCount = 8}, report);
   fine = errorsOf(report);
   EXPECT_LE(fine.at("ssdf_rms_radians"), 0.3 * coarse.at("ssdf_rms_radians"));
   EXPECT_LE(fine.at("ssdf_sign_share"), 0.5 * coarse.at("ssdf_sign_share"));
@@ -129,7 +129,7 @@ TEST(Bake, RefusesWhatItCannotDo) {
   expectUsage({.resolution = 12});
   expectUsage({.resolution = 260});
   expectUsage({.resolution = 18});
-  expectUsage({.terms = 0});
+  expectUsage({.terms = -1});
   expectUsage({.terms = 257});
   expectUsage({.directionCount = 6});
   expectUsage({.directionCount = 68});
