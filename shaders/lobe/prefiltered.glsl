@@ -5,7 +5,7 @@
 
 // Lobes this many times sharper than the sharpest level read the SSDF alone. Between, both are close (measured on the built-in scene:
 // .009 the level, .021 the SSDF at the level's own sharpness, .011 the SSDF at 2.3 times it), so a smooth passage shows no seam.
-const Real kSsdfFrom = Real(1.6);
+CONST Real kSsdfFrom = Real(1.6);
 
 struct VisibilitySource {
   int level;    // the broader of the two levels
@@ -21,7 +21,7 @@ FN VisibilitySource visibilitySource(IN(Real) sharpness, IN(int) levels, IN(Real
   source.next = Real(0.0);
   source.ssdf = Real(0.0);
   Real last = Real(levels - 1);
-  Real position = sharpness > first ? log(sharpness / first) / log(ratio) : Real(0.0);
+  Real position = sharpness <= first ? Real(0.0) : log(sharpness / first) / log(ratio);  // NaN stays one
   if (!(position < last)) {
     Real t = clampReal((position - last) * log(ratio) / log(kSsdfFrom), Real(0.0), Real(1.0));
     source.level = levels - 1;

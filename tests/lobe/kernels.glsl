@@ -4,6 +4,7 @@
 #include "shaders/lobe/sg.glsl"
 #include "shaders/lobe/half_space.glsl"
 #include "shaders/lobe/ssdf.glsl"
+#include "shaders/lobe/prefiltered.glsl"
 #include "shaders/lobe/cosine.glsl"
 #include "shaders/lobe/warp.glsl"
 #include "shaders/lobe/octahedral.glsl"
@@ -57,6 +58,14 @@ KERNEL(sgConvolve) {
 KERNEL(sgHalfSpaceFraction) { y[0] = sgHalfSpaceFraction(x.v[0], x.v[1]); }
 KERNEL(sgHalfSpaceIntegral) { y[0] = sgHalfSpaceIntegral(x.v[0], x.v[1]); }
 KERNEL(ssdfVisibleFraction) { y[0] = ssdfVisibleFraction(x.v[0], x.v[1]); }
+// Sharpness, levels, first, ratio. The place among the levels is continuous where the level itself jumps.
+KERNEL(visibilitySource) {
+  int levels = int(x.v[1]);
+  VisibilitySource source = visibilitySource(x.v[0], levels, x.v[2], x.v[3]);
+  y[0] = Real(source.level) + source.next;
+  y[1] = source.ssdf;
+  y[2] = source.level >= 0 && source.level < levels && (source.next <= Real(0.0) || source.level + 1 < levels) ? Real(1.0) : Real(0.0);
+}
 KERNEL(clampedCosineMean) { y[0] = clampedCosineMean(x.v[0], x.v[1]); }
 KERNEL(clampedCosineIntegral) { y[0] = clampedCosineIntegral(x.v[0], x.v[1]); }
 

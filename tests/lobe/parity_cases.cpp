@@ -225,6 +225,16 @@ void addHalfSpaceAndCosine(Registry& r) {
     out.push_back(g.chance(0.1) ? static_cast<float>(g.uniform(-3.1416, 3.1416)) : std::abs(s) <= 1 ? std::asin(s) : s);
     out.push_back(l);
   });
+  r.add(CHIARO_CASE(visibilitySource, 4, 3, scalars(3), "sharpness >= 0, 1..8 levels, ratio 1.5..8; shares: 1e-5 absolute, a level is stored to 4e-3",
+                    [](const float*) { return 1.0 / kFloor; }),
+        [](Generator& g, auto& out) {
+          const double levels = std::floor(g.uniform(1, 8.999)), first = g.logUniform(0.1, 100), ratio = g.logUniform(1.5, 8);
+          // Where levels give way to the SSDF, at a level's own sharpness, anywhere.
+          const double last = first * std::pow(ratio, levels - 1);
+          const double l = g.chance(0.3) ? last * g.logUniform(0.9, 1.8) : first * std::pow(ratio, std::floor(g.uniform(-1, levels + 1)));
+          out.push_back(g.chance(0.5) ? static_cast<float>(l) : std::abs(g.sharpness()));
+          for (const double v : {levels, first, ratio}) out.push_back(static_cast<float>(v));
+        });
   r.add(CHIARO_CASE(clampedCosineMean, 2, 1, scalars(1), "cosine in [-1, 1], sharpness >= 0"), sineAndSharpness);
   r.add(CHIARO_CASE(clampedCosineIntegral, 2, 1, scalars(1), "cosine in [-1, 1], sharpness >= 0"), sineAndSharpness);
 }
