@@ -69,6 +69,9 @@ struct BakeReport {
 /// stage name, share done in [0,1]. Called from one thread at a time.
 using ProgressHandler = std::function<void(const std::string& stage, double done)>;
 
+/// `settings` with every automatic value that does not depend on the scene filled in. Throws Error (usage) for one out of range.
+BakeSettings resolvedSettings(const BakeSettings& settings);
+
 /// Repairs, refines where asked to, traces, transforms, compresses. Same bytes for any thread count. Throws Error for a scene with no triangle.
 BakedScene bake(const Scene& scene, const BakeSettings& settings, BakeReport& report, const ProgressHandler& progress = {});
 

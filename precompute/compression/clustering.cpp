@@ -90,15 +90,17 @@ void findComponents(const RowMatrix& centered, int wanted, double leastRms, Clus
   const double leastEnergy = leastRms * leastRms * static_cast<double>(n);
   if (width == 0 || !(static_cast<double>(centered.squaredNorm()) > leastEnergy)) return;
   const auto wide = index(std::min(width + 4, std::min(n, static_cast<std::size_t>(centered.cols()))));
+  // Sums of all rows with random signs: even a direction that only few rows have is in them.
+  std::mt19937 random(0);
+  RowMatrix weights(centered.rows(), wide);
+  for (Index i = 0; i < weights.size(); ++i) weights.data()[i] = (random() & 1u) != 0 ? 1.0f : -1.0f;
   RowMatrix basis(centered.cols(), wide);
-  // Evenly spaced rows are a start as good as chance, and reproducible.
-  for (Index k = 0; k < wide; ++k) basis.col(k) = centered.row(k * centered.rows() / wide).transpose();
+  basis.noalias() = centered.transpose() * weights;
   const auto orthonormalise = [&] {
     const Eigen::HouseholderQR<Eigen::MatrixXf> qr(basis);
     basis = qr.householderQ() * Eigen::MatrixXf::Identity(basis.rows(), wide);
   };
   orthonormalise();
-  RowMatrix weights;
   for (int i = 0; i < kSubspaceIterations; ++i) {
     weights.noalias() = centered * basis;
     basis.noalias() = centered.transpose() * weights;
