@@ -108,8 +108,9 @@ TEST(Prefilter, AnOpenVertexSeesAllOfEveryLobe) {
         // The horizon is the only edge.
         EXPECT_GE(filtered.values[i], 1.0 - edgeTolerance(resolution, sharpness, above) - kPyramid) << resolution << " " << sharpness;
         EXPECT_LE(filtered.values[i], 1.0f);
-        if (glm::dot(axis, normal) * std::sqrt(level.sharpness) > 4.0f)
+        if (glm::dot(axis, normal) * std::sqrt(level.sharpness) > 4.0f) {
           EXPECT_LE(std::abs(filtered.values[i] - 1.0f), 1e-3f) << "four standard deviations above the horizon " << resolution << " " << sharpness;
+        }
       });
     }
 }
@@ -156,7 +157,9 @@ TEST(Prefilter, EachSideOfADoubleSidedVertexIsItsOwn) {
     forEachTexel([&](std::size_t i, const VisibilityLevel& level, glm::vec3 axis) {
       const float sine = glm::dot(axis, normal);
       const auto sharpness = static_cast<double>(level.sharpness);
-      if (sine > 0.0f) ASSERT_EQ(both.values[i], front.values[i]);
+      if (sine > 0.0f) {
+        ASSERT_EQ(both.values[i], front.values[i]);
+      }
       if (sine >= 0.0f) return;
       const double error = std::abs(static_cast<double>(both.values[i]) - integrated(axis, sharpness, -normal, sees));
       EXPECT_LE(error, edgeTolerance(128, sharpness, shareAbove(axis, -normal, sharpness)) + kPyramid) << sharpness;
