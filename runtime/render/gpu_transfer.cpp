@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <glm/glm.hpp>
+#include <glm/gtc/packing.hpp>
 
 #include "assets/error.h"
 #include "runtime/render/frame_block.h"
@@ -76,6 +77,9 @@ void uploadCell(gl::Texture& texture, const CellLayout& layout, int columns, std
                       layout.height, 1, format, GL_FLOAT, texels.data());
 }
 
+/// To the nearest half float: drivers may cut bits off instead (Mesa does), and a map's texels would all lean towards 0.
+float rounded(float x) { return glm::unpackHalf1x16(glm::packHalf1x16(x)); }
+
 /// `maps`: rows of `stride` values in the order of clusterMaps; scales: what each term's map is multiplied by.
 void fillCells(const std::vector<TransferCluster>& clusters, const CellLayout& layout, const std::vector<float>& maps, std::size_t stride,
                       float steps, gl::Texture& means, gl::Texture& terms, int& columns) {
@@ -89,18 +93,27 @@ void fillCells(const std::vector<TransferCluster>& clusters, const CellLayout& l
   std::vector<float> mean(layout.source.size());
   std::vector<glm::vec4> four(layout.source.size());
   for (std::size_t c = 0; c < clusters.size(); ++c) {
-    for (std::size_t t = 0; t < mean.size(); ++t) mean[t] = map[layout.source[t]];
+    for (std::size_t t = 0; t < mean.size(); ++t) mean[t] = rounded(map[layout.source[t]]);
     uploadCell(means, layout, columns, c, GL_RED, mean);
     map += stride;
     for (int first = 0; first < clusters[c].terms; first += 4, ++cell) {
       std::fill(four.begin(), four.end(), glm::vec4(0.0f));
       for (int i = 0; i < std::min(4, clusters[c].terms - first); ++i, map += stride) {
         const float scale = clusters[c].weightScale[at(first + i)] * steps;
-        for (std::size_t t = 0; t < four.size(); ++t) four[t][i] = map[layout.source[t]] * scale;
+        for (std::size_t t = 0; t < four.size(); ++t) four[t][i] = rounded(map[layout.source[t]] * scale);
       }
       uploadCell(terms, layout, columns, cell, GL_RGBA, four);
     }
   }
+}
+
+/// Without terms every vertex has the mean: the scene may be open everywhere, or nowhere.
+bool isOpen(const Transfer& transfer) {
+  const auto maps = transfer.clustered.empty()
+                        ? transfer.mean
+                        : clusterMaps(transfer.clustered.clusters, transfer.clustered.functions.unpack(transfer.columns()), transfer.mean, 0, transfer.columns());
+  constexpr float kFree = 0.25f;  // radians of SSDF, or share of a level: rounding aside, both are at their most or below 0
+  return std::all_of(maps.begin(), maps.end(), [](float value) { return value > kFree; });
 }
 
 }  // namespace
@@ -118,7 +131,7 @@ GpuTransfer::GpuTransfer(const BakedScene& baked) {
   requireStorage(visibility.size(), "visible fractions");
   visibility_ = gl::Buffer(visibility);
 
-  occludes_ = transfer.terms > 0 || transfer.clustered.clusters.size() > 1;
+  occludes_ = transfer.terms > 0 || transfer.clustered.clusters.size() > 1 || !isOpen(transfer);
   if (!occludes_) return;
   termVectors_ = std::max(1, vectorsOf(transfer.terms));
   uploadWeights(transfer);

@@ -11,6 +11,7 @@
 #include <map>
 #include <numbers>
 #include <random>
+#include <chrono>
 #include <set>
 
 #include "precompute/bake.h"
@@ -370,6 +371,23 @@ TEST(GpuTransfer, MoreCellsThanATextureArrayHasLayers) {
   }
 }
 
+TEST(GpuTransfer, BENCH) {
+  auto scene = syntheticScene(400, 8);
+  auto& t = scene.transfer;
+  t.resolution = 64; t.terms = 48;
+  t.clustered.levels = {{3.0f, 12}, {10.5f, 20}, {36.75f, 28}, {128.625f, 44}};
+  t.mean.assign(t.columns(), 0.3f);
+  t.clustered.functions = {};
+  std::vector<float> f(t.columns(), 0.123f);
+  t.clustered.functions.append(f.data(), f.size(), 16);
+  for (auto& c : t.clustered.clusters) { c.terms = 48; c.mean.assign(1, 3); c.components.assign(48, 5); c.weightScale.assign(48, 1e-3f); }
+  for (auto& p : t.primitives) p.clustered.weights.assign(400*48, 1);
+  for (int i = 0; i < 3; ++i) { 
+  const auto a = std::chrono::steady_clock::now();
+  const GpuTransfer gpu(scene);
+  glFinish();
+  std::printf("BENCH %.3f s\n", std::chrono::duration<double>(std::chrono::steady_clock::now() - a).count()); }
+}
 TEST(GpuTransfer, AClusterWithoutTerms) {
   for (const int weightBits : {8, 16}) {
     const auto scene = syntheticScene(20, weightBits);
@@ -477,12 +495,12 @@ TEST(GpuTransfer, LightsAtVertices) {
     block.bindBase(GL_UNIFORM_BUFFER, 0);
     to.bindBase(GL_SHADER_STORAGE_BUFFER, 5);
     gpu.bind();
-    program.set("rowGroups", 2);  // more than one row of work groups
+    program.set("rowGroups", 1);  // more than one row of work groups
     program.set("vertexCount", static_cast<unsigned>(vertices));
     program.use();
     const auto groups = static_cast<GLuint>((vertices + 63) / 64);
-    ASSERT_GT(groups, 2u);
-    glDispatchCompute(2, (groups + 1) / 2, 1);
+    ASSERT_GE(groups, 2u);
+    glDispatchCompute(1, groups, 1);
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     const auto got = to.read<std::uint32_t>();
     double distance = 0, share = 0;
@@ -495,9 +513,9 @@ TEST(GpuTransfer, LightsAtVertices) {
       EXPECT_TRUE(std::isfinite(seen.x) && std::isfinite(seen.y));
     }
     std::printf("%zu lights at vertices: distance %.1e, share %.1e of the value\n", got.size(), distance, share);
-    // Stored as halves; Mesa cuts bits off where others round.
-    EXPECT_LE(distance, 2.05 * kHalf);
-    EXPECT_LE(share, 2.05 * kHalf);
+    // Stored as halves, which packHalf2x16 may also cut: a whole unit.
+    EXPECT_LE(distance, 2.0 * kHalf);
+    EXPECT_LE(share, 2.0 * kHalf);
   }
 }
 

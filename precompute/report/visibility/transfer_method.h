@@ -1,5 +1,5 @@
 #pragma once
-/// The transfer of a baked file, as the runtime reads it for sharp lobes.
+/// The transfer of a baked file, as the runtime reads it.
 
 #include <memory>
 
@@ -8,8 +8,8 @@
 
 namespace chiaro {
 
-/// `transfer` must outlive the method, and VisibilityInput::viewpoints must be those of its scene. The visible fractions of fixed lobes
-/// are neither used nor counted.
+/// `transfer` must outlive the method, and VisibilityInput::viewpoints must be those of its scene. Of the forms without levels only the SSDF
+/// is asked; the visible fractions of fixed lobes are neither used nor counted.
 std::unique_ptr<VisibilityMethod> makeTransferMethod(const Transfer& transfer);
 
 }  // namespace chiaro
