@@ -71,16 +71,16 @@ int columnsFor(std::size_t cells) {
   return static_cast<int>((cells + at(most) - 1) / at(most));
 }
 
+/// texels: halves, to the nearest. Of floats, drivers may cut bits off (Mesa does), and every map would lean towards 0.
 template <class T>
 void uploadCell(gl::Texture& texture, const CellLayout& layout, int columns, std::size_t cell, GLenum format, const std::vector<T>& texels) {
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 2);
   glTextureSubImage3D(texture.id(), 0, static_cast<GLint>(cell % at(columns)) * layout.width, 0, static_cast<GLint>(cell / at(columns)), layout.width,
-                      layout.height, 1, format, GL_FLOAT, texels.data());
+                      layout.height, 1, format, GL_HALF_FLOAT, texels.data());
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
 }
 
-/// To the nearest half float: drivers may cut bits off instead (Mesa does), and a map's texels would all lean towards 0.
-float rounded(float x) { return glm::unpackHalf1x16(glm::packHalf1x16(x)); }
-
-/// `maps`: rows of `stride` values in the order of clusterMaps; scales: what each term's map is multiplied by.
+/// `maps`: rows of `stride` values in the order of clusterMaps; steps: the stored weight that a shader reads as 1.
 void fillCells(const std::vector<TransferCluster>& clusters, const CellLayout& layout, const std::vector<float>& maps, std::size_t stride,
                       float steps, gl::Texture& means, gl::Texture& terms, int& columns) {
   std::size_t cells = 0;
@@ -90,17 +90,17 @@ void fillCells(const std::vector<TransferCluster>& clusters, const CellLayout& l
   terms = cellTexture(GL_RGBA16F, layout, std::max<std::size_t>(cells, 1), columns);
   const float* map = maps.data();
   std::size_t cell = 0;
-  std::vector<float> mean(layout.source.size());
-  std::vector<glm::vec4> four(layout.source.size());
+  std::vector<glm::uint16> mean(layout.source.size());
+  std::vector<glm::u16vec4> four(layout.source.size());
   for (std::size_t c = 0; c < clusters.size(); ++c) {
-    for (std::size_t t = 0; t < mean.size(); ++t) mean[t] = rounded(map[layout.source[t]]);
+    for (std::size_t t = 0; t < mean.size(); ++t) mean[t] = glm::packHalf1x16(map[layout.source[t]]);
     uploadCell(means, layout, columns, c, GL_RED, mean);
     map += stride;
     for (int first = 0; first < clusters[c].terms; first += 4, ++cell) {
-      std::fill(four.begin(), four.end(), glm::vec4(0.0f));
+      std::fill(four.begin(), four.end(), glm::u16vec4(0));
       for (int i = 0; i < std::min(4, clusters[c].terms - first); ++i, map += stride) {
         const float scale = clusters[c].weightScale[at(first + i)] * steps;
-        for (std::size_t t = 0; t < four.size(); ++t) four[t][i] = rounded(map[layout.source[t]] * scale);
+        for (std::size_t t = 0; t < four.size(); ++t) four[t][i] = glm::packHalf1x16(map[layout.source[t]] * scale);
       }
       uploadCell(terms, layout, columns, cell, GL_RGBA, four);
     }
