@@ -24,8 +24,10 @@ constexpr Levels kLevels[] = {{4, 3, 3.5}, {1, 128, 2}, {1, .25, 2}, {2, 8, 1.25
 
 /// By float arithmetic, as the GPU's, and by double.
 std::vector<lobe64::VisibilitySource> sources(double sharpness, const Levels& l) {
-  const auto f = lobe32::visibilitySource(static_cast<float>(sharpness), l.count, static_cast<float>(l.first), static_cast<float>(l.ratio));
-  return {lobe64::visibilitySource(sharpness, l.count, l.first, l.ratio), {f.level, static_cast<double>(f.next), static_cast<double>(f.ssdf)}};
+  const auto f =
+      lobe32::visibilitySource(static_cast<float>(sharpness), l.count, static_cast<float>(l.first), static_cast<float>(l.ratio));
+  return {lobe64::visibilitySource(sharpness, l.count, l.first, l.ratio),
+          {f.level, static_cast<double>(f.next), static_cast<double>(f.ssdf)}};
 }
 
 void expectValid(const lobe64::VisibilitySource& s, int count) {
@@ -35,8 +37,10 @@ void expectValid(const lobe64::VisibilitySource& s, int count) {
   EXPECT_LE(s.next, 1.0);
   EXPECT_GE(s.ssdf, 0.0);
   EXPECT_LE(s.ssdf, 1.0);
-  if (s.level == count - 1) EXPECT_EQ(s.next, 0.0);
-  else EXPECT_EQ(s.ssdf, 0.0);
+  if (s.level == count - 1)
+    EXPECT_EQ(s.next, 0.0);
+  else
+    EXPECT_EQ(s.ssdf, 0.0);
 }
 
 /// One number that grows with sharpness: levels read, then the SSDF's share above the last.
@@ -72,7 +76,8 @@ TEST(VisibilitySource, LinearInTheLogarithmBetweenLevels) {
   for (const auto& l : kLevels)
     for (double s = l.first; s < l.sharpness(l.count - 1); s *= 1.01)
       for (const auto& source : sources(s, l)) {
-        const double read = std::log(l.sharpness(source.level)) * (1 - source.next) + std::log(l.sharpness(source.level + 1)) * source.next;
+        const double read =
+            std::log(l.sharpness(source.level)) * (1 - source.next) + std::log(l.sharpness(source.level + 1)) * source.next;
         EXPECT_NEAR(read, std::log(s), kRounding) << s;
         EXPECT_EQ(source.ssdf, 0.0);
       }

@@ -54,8 +54,10 @@ void main() {
 }
 )";
 
-std::vector<glm::vec4> readOnGpu(const GpuTransfer& gpu, const std::vector<Reading>& readings, const gl::ShaderReader& reader = gl::readEmbeddedShader) {
-  const auto program = gl::Program::link({{GL_COMPUTE_SHADER, gl::resolveShaderText("reading.comp", kShader, reader, gpu.defines())}});
+std::vector<glm::vec4> readOnGpu(const GpuTransfer& gpu, const std::vector<Reading>& readings,
+                                 const gl::ShaderReader& reader = gl::readEmbeddedShader) {
+  const auto program =
+      gl::Program::link({{GL_COMPUTE_SHADER, gl::resolveShaderText("reading.comp", kShader, reader, gpu.defines())}});
   const gl::Buffer from(readings), to(readings.size() * sizeof(glm::vec4));
   gpu.bind();
   from.bindBase(GL_SHADER_STORAGE_BUFFER, 0);
@@ -108,7 +110,8 @@ struct Rows {
         const auto stride = static_cast<std::size_t>(t.paddedTerms());
         for (std::size_t v = 0; v * stride < p.weights.size(); ++v) {
           weights.clear();
-          for (std::size_t k = 0; k < static_cast<std::size_t>(t.terms); ++k) weights.push_back(t.weightScale[k] * p.weights[v * stride + k] / 32767.0);
+          for (std::size_t k = 0; k < static_cast<std::size_t>(t.terms); ++k)
+            weights.push_back(t.weightScale[k] * p.weights[v * stride + k] / 32767.0);
           add(maps.data(), t.terms, weights, 0);
         }
         continue;
@@ -116,7 +119,8 @@ struct Rows {
       std::size_t w = 0;
       for (const auto c : p.clustered.cluster) {
         weights.clear();
-        for (const float scale : clusters[c].weightScale) weights.push_back(static_cast<double>(scale) * p.clustered.weights[w++]);
+        for (const float scale : clusters[c].weightScale)
+          weights.push_back(static_cast<double>(scale) * p.clustered.weights[w++]);
         add(maps.data() + first[c], clusters[c].terms, weights, c);
       }
     }
@@ -131,10 +135,13 @@ struct Rows {
     }
     return row;
   }
-  std::size_t clustersOf(const Reading& r) const { return std::set<int>{cluster[r.corners.x], cluster[r.corners.y], cluster[r.corners.z]}.size(); }
+  std::size_t clustersOf(const Reading& r) const {
+    return std::set<int>{cluster[r.corners.x], cluster[r.corners.y], cluster[r.corners.z]}.size();
+  }
   std::size_t firstOf(std::size_t level) const {
     auto first = static_cast<std::size_t>(resolution) * static_cast<std::size_t>(resolution);
-    for (std::size_t l = 0; l < level; ++l) first += static_cast<std::size_t>(levels[l].resolution) * static_cast<std::size_t>(levels[l].resolution);
+    for (std::size_t l = 0; l < level; ++l)
+      first += static_cast<std::size_t>(levels[l].resolution) * static_cast<std::size_t>(levels[l].resolution);
     return first;
   }
 };
@@ -154,9 +161,9 @@ double contrast(const float* map, int resolution, glm::vec3 direction) {
 
 // Maps are half floats: half a unit in the last of 11 bits, of the mean and of each term.
 constexpr double kHalf = 1.0 / 2048;
-// A texture unit takes its place between two texels in steps of 1/256 (Direct3D and Vulkan ask no more; llvmpipe uses floats), at worst one
-// step off along each axis.
-constexpr double kFilter = 0;
+// A texture unit takes its place between two texels in steps of 1/256 (Vulkan asks for 1/16, GPUs have this), at worst one step off along
+// each axis. Mesa's software renderer filters in float: without this term its worst reading is .88 of the bound.
+double filterError() { return testContext().renderer().find("llvmpipe") != std::string::npos ? 0.0 : 2.0 / 256; }
 // What float arithmetic on the way to a texel adds, in radians and shares: 1e-7 of a map of 64 texels of contrast 1.
 constexpr double kFloat = 1e-5;
 
@@ -187,19 +194,23 @@ Comparison compare(const Transfer& transfer, const std::vector<Reading>& reading
     const auto row = rows.interpolated(rows.value, r), size = rows.interpolated(rows.size, r);
     const glm::vec3 d(r.direction);
     const auto bound = [&](std::size_t first, int resolution) {
-      return kHalf * static_cast<double>(sampleOctahedral(size.data() + first, resolution, d)) + kFilter * contrast(row.data() + first, resolution, d) + kFloat;
+      return kHalf * static_cast<double>(sampleOctahedral(size.data() + first, resolution, d)) +
+             filterError() * contrast(row.data() + first, resolution, d) + kFloat;
     };
     const double ssdfBound = bound(0, rows.resolution);
     ssdf.take(static_cast<double>(got[i].x) - static_cast<double>(sampleOctahedral(row.data(), rows.resolution, d)), ssdfBound);
     if (rows.levels.empty()) continue;
     const auto l = static_cast<std::size_t>(r.corners.w);
     const auto first = rows.firstOf(l);
-    const double expected = std::clamp(static_cast<double>(sampleOctahedral(row.data() + first, rows.levels[l].resolution, d)), 0.0, 1.0);
+    const double expected =
+        std::clamp(static_cast<double>(sampleOctahedral(row.data() + first, rows.levels[l].resolution, d)), 0.0, 1.0);
     level.take(static_cast<double>(got[i].y) - expected, bound(first, rows.levels[l].resolution));
 
     // As shade.glsl puts the two together. A lobe's visible share rises by sqrt(sharpness / 2 pi) a radian at most.
     const auto sharpness = static_cast<double>(r.direction.w);
-    const double seen = glm::mix(static_cast<double>(got[i].z), lobe64::ssdfVisibleFraction(static_cast<double>(got[i].x), sharpness), static_cast<double>(got[i].w));
+    const double seen =
+        glm::mix(static_cast<double>(got[i].z), lobe64::ssdfVisibleFraction(static_cast<double>(got[i].x), sharpness),
+                 static_cast<double>(got[i].w));
     double most = 0;
     for (std::size_t k = 0; k < rows.levels.size(); ++k) most = std::max(most, bound(rows.firstOf(k), rows.levels[k].resolution));
     share.take(seen - visibleShare(row.data(), rows.resolution, rows.levels, d, sharpness),
@@ -217,7 +228,8 @@ std::vector<glm::vec3> directions(std::mt19937& random, int resolution) {
   for (const float zero : {0.0f, -0.0f, 1e-7f, -1e-7f, 1e-3f, -1e-3f})
     for (const float a : {-0.9f, -0.3f, 0.02f, 0.6f}) {
       const float b = std::sqrt(1.0f - a * a);
-      for (const float s : {-1.0f, 1.0f}) list.insert(list.end(), {glm::vec3(zero, a, s * b), glm::vec3(a, zero, s * b), glm::vec3(a, s * b, zero)});
+      for (const float s : {-1.0f, 1.0f})
+        list.insert(list.end(), {glm::vec3(zero, a, s * b), glm::vec3(a, zero, s * b), glm::vec3(a, s * b, zero)});
     }
   // Texel centres and corners of the border.
   for (int i = 0; i < resolution; i += std::max(1, resolution / 8))
@@ -234,7 +246,8 @@ std::vector<glm::uvec3> trianglesOf(const Scene& scene) {
   std::vector<glm::uvec3> list;
   std::uint32_t first = 0;
   for (const auto& p : scene.primitives) {
-    for (std::size_t i = 0; i + 2 < p.indices.size(); i += 3) list.emplace_back(first + p.indices[i], first + p.indices[i + 1], first + p.indices[i + 2]);
+    for (std::size_t i = 0; i + 2 < p.indices.size(); i += 3)
+      list.emplace_back(first + p.indices[i], first + p.indices[i + 1], first + p.indices[i + 2]);
     first += static_cast<std::uint32_t>(p.positions.size());
   }
   return list;
@@ -245,8 +258,10 @@ std::vector<Reading> readingsOf(const BakedScene& baked, std::uint32_t seed, std
   std::mt19937 random(seed);
   auto triangles = trianglesOf(baked.scene);
   const auto vertices = static_cast<std::uint32_t>(baked.scene.vertexCount());
-  for (std::size_t i = triangles.size(); i > 0; --i) triangles.emplace_back(random() % vertices, random() % vertices, random() % vertices);
-  const std::array<glm::vec3, 5> places{glm::vec3(1, 0, 0), {0, 0, 1}, {0.25f, 0.75f, 0}, {0.2f, 0.5f, 0.3f}, {0.4f, 0.01f, 0.59f}};
+  for (std::size_t i = triangles.size(); i > 0; --i)
+    triangles.emplace_back(random() % vertices, random() % vertices, random() % vertices);
+  const std::array<glm::vec3, 5> places{
+      glm::vec3(1, 0, 0), {0, 0, 1}, {0.25f, 0.75f, 0}, {0.2f, 0.5f, 0.3f}, {0.4f, 0.01f, 0.59f}};
   const std::array<float, 8> sharpnesses{0.0f, 2.0f, 7.0f, 36.75f, 100.0f, 150.0f, 190.0f, 2000.0f};
   const auto& levels = baked.transfer.clustered.levels;
   const auto dirs = directions(random, baked.transfer.resolution);
@@ -265,7 +280,8 @@ std::array<int, 4> expectSameOnGpu(const BakedScene& baked, std::uint32_t seed, 
   EXPECT_TRUE(gpu.occludes());
   const auto readings = readingsOf(baked, seed, count);
   const auto c = compare(baked.transfer, readings, readOnGpu(gpu, readings));
-  std::printf("%zu readings, corners in 1, 2, 3 clusters: %d, %d, %d\n", readings.size(), c.bySlots[1], c.bySlots[2], c.bySlots[3]);
+  std::printf("%zu readings, corners in 1, 2, 3 clusters: %d, %d, %d\n", readings.size(), c.bySlots[1], c.bySlots[2],
+              c.bySlots[3]);
   c.ssdf.report("ssdfAt");
   c.level.report("levelAt");
   c.share.report("visible share");
@@ -277,8 +293,14 @@ std::array<int, 4> expectSameOnGpu(const BakedScene& baked, std::uint32_t seed, 
 
 BakedScene baked(Compression compression, int weightBits, int clusters = 7) {
   BakeReport report;
-  const BakeSettings settings{.compression = compression, .resolution = 32, .samplingResolution = 32, .terms = 10, .clusters = clusters, .functions = 32,
-                              .weightBits = weightBits, .directionCount = 16};
+  const BakeSettings settings{.compression = compression,
+                              .resolution = 32,
+                              .samplingResolution = 32,
+                              .terms = 10,
+                              .clusters = clusters,
+                              .functions = 32,
+                              .weightBits = weightBits,
+                              .directionCount = 16};
   return bake(boxesOnFloor(8), settings, report);
 }
 
@@ -338,7 +360,8 @@ BakedScene syntheticScene(std::size_t clusters, int weightBits) {
     cluster.terms = i % 5 == 2 ? 0 : 13 + static_cast<int>(i % 4);
     cluster.meanScale = 0.2f;
     for (std::size_t f = 0; f < kFunctions; ++f) cluster.mean.push_back(static_cast<std::int16_t>(uniform(-32767, 32767)));
-    for (std::size_t f = 0; f < kFunctions * static_cast<std::size_t>(cluster.terms); ++f) cluster.components.push_back(static_cast<std::int8_t>(uniform(-127, 127)));
+    for (std::size_t f = 0; f < kFunctions * static_cast<std::size_t>(cluster.terms); ++f)
+      cluster.components.push_back(static_cast<std::int8_t>(uniform(-127, 127)));
     for (int k = 0; k < cluster.terms; ++k) cluster.weightScale.push_back(uniform(0.01f, 0.1f) / static_cast<float>(steps));
   }
   for (std::size_t p = 0; p < 2; ++p) {
@@ -349,7 +372,8 @@ BakedScene syntheticScene(std::size_t clusters, int weightBits) {
       vertices.cluster.push_back(cluster);
       // The largest weights there are, too.
       for (int k = 0; k < c.clusters[cluster].terms; ++k) {
-        const int w = std::array{static_cast<int>(uniform(-1, 1) * static_cast<float>(steps)), steps, -steps}[random() % 5 < 3 ? 0 : 1 + random() % 2];
+        const int w = std::array{static_cast<int>(uniform(-1, 1) * static_cast<float>(steps)), steps,
+                                 -steps}[random() % 5 < 3 ? 0 : 1 + random() % 2];
         vertices.weights.push_back(static_cast<std::int16_t>(w));
       }
       primitive.positions.emplace_back(0);
@@ -437,7 +461,9 @@ TEST(GpuTransfer, NoSeamsBetweenClusters) {
   std::size_t edges = 0;
   for (const auto& [edge, corners] : third) {
     const auto [a, b] = edge;
-    if (corners.size() < 2 || std::set<int>{rows.cluster[a], rows.cluster[b], rows.cluster[corners[0]], rows.cluster[corners[1]]}.size() < 2) continue;
+    if (corners.size() < 2 ||
+        std::set<int>{rows.cluster[a], rows.cluster[b], rows.cluster[corners[0]], rows.cluster[corners[1]]}.size() < 2)
+      continue;
     ++edges;
     for (const float s : {0.1f, 0.5f, 0.83f})
       for (int i = 0; i < 12; ++i) {
@@ -470,7 +496,8 @@ TEST(GpuTransfer, LightsAtVertices) {
     FrameBlock frame;
     const auto vertices = gpu.vertexCount();
     std::vector<Reading> readings;
-    for (std::size_t l = 0; l < 24; ++l) frame.sgLights[l].axisSharpness = glm::vec4(dirs[(l * 37) % dirs.size()], sharpnesses[l % sharpnesses.size()]);
+    for (std::size_t l = 0; l < 24; ++l)
+      frame.sgLights[l].axisSharpness = glm::vec4(dirs[(l * 37) % dirs.size()], sharpnesses[l % sharpnesses.size()]);
     frame.counts.x = 24;
     for (std::size_t v = 0; v < vertices; ++v)
       for (std::size_t l = 0; l < 24; ++l)
@@ -495,10 +522,14 @@ TEST(GpuTransfer, LightsAtVertices) {
     double distance = 0, share = 0;
     for (std::size_t i = 0; i < got.size(); ++i) {
       const auto seen = glm::unpackHalf2x16(got[i]);
-      const auto difference = [&](float a, float b) { return static_cast<double>(std::abs(a - b) / std::max(std::abs(b), 1e-2f)); };
+      const auto difference = [&](float a, float b) {
+        return static_cast<double>(std::abs(a - b) / std::max(std::abs(b), 1e-2f));
+      };
       raise(distance, difference(seen.x, expected[i].x));
-      if (expected[i].w < 1.0f && !scene.transfer.clustered.levels.empty()) raise(share, difference(seen.y, expected[i].z));
-      else EXPECT_EQ(seen.y, 1.0f);
+      if (expected[i].w < 1.0f && !scene.transfer.clustered.levels.empty())
+        raise(share, difference(seen.y, expected[i].z));
+      else
+        EXPECT_EQ(seen.y, 1.0f);
     }
     std::printf("%zu lights at vertices: distance %.1e, share %.1e of the value\n", got.size(), distance, share);
     // Stored as halves, which packHalf2x16 may also cut: a whole unit.
