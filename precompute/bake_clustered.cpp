@@ -28,8 +28,9 @@ double secondsSince(Clock::time_point start) { return std::chrono::duration<doub
 const std::vector<VisibilityLevel> kLevels{{3.0f, 12}, {10.5f, 20}, {36.75f, 28}, {128.625f, 44}};
 /// With levels, only lobes sharper than the last one read the SSDF: three of their standard deviations.
 constexpr float kJointClamp = 0.265f;
-/// What a radian of distance, and the share of a lobe, weigh in the joint error.
-constexpr float kLevelWeight = 0.2f;
+/// What the share of a lobe weighs in the joint error beside a radian of distance: the sharpest level holds the most detail and, unweighted,
+/// would be the worst kept.
+float levelWeight(const VisibilityLevel& level) { return level == kLevels.back() ? 0.35f : 0.2f; }
 constexpr float kFractionWeight = 0.3f;
 
 constexpr std::size_t kMostSampled = 8192;     // rows the shared functions are made from
@@ -76,7 +77,7 @@ std::vector<float> columnWeights(const TransferRows& rows, bool joint) {
   if (!joint) return weight;
   for (const auto& level : rows.layout().levels)
     for (int t = 0; t < level.resolution * level.resolution; ++t)
-      weight.push_back(kLevelWeight * kLevelWeight *
+      weight.push_back(levelWeight(level) * levelWeight(level) *
                        static_cast<float>(lobe64::octahedralTexelSolidAngle({t % level.resolution, t / level.resolution}, level.resolution)));
   const auto directions = rows.layout().directions.size();
   weight.insert(weight.end(), directions, kFractionWeight * kFractionWeight * 4.0f * std::numbers::pi_v<float> / static_cast<float>(directions));

@@ -23,6 +23,14 @@ int nibble(int bits) { return bits >= 8 ? bits - 16 : bits; }
 
 }  // namespace
 
+bool isGeometric(const std::vector<VisibilityLevel>& levels) {
+  for (std::size_t l = 2; l < levels.size(); ++l) {
+    const float ratio = levels[l].sharpness / levels[l - 1].sharpness * levels[0].sharpness / levels[1].sharpness;
+    if (!(std::abs(ratio - 1.0f) <= 1e-3f)) return false;
+  }
+  return true;
+}
+
 std::size_t PackedFunctions::bytesOf(int bits, std::size_t columns) {
   if (bits == 16) return 2 * columns;
   return bits == 8 ? columns : blocks(columns) * (1 + kBlock / 2);

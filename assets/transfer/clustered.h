@@ -20,6 +20,9 @@ struct VisibilityLevel {
   bool operator==(const VisibilityLevel&) const = default;
 };
 
+/// Whether each level is as many times sharper than the one before as the second than the first (within a thousandth): lookups rely on it.
+bool isGeometric(const std::vector<VisibilityLevel>& levels);
+
 /// Functions in one block of bytes, each as 16, 8 or 4 bits a value:
 ///   16  half floats;
 ///    8  signed bytes, value = scale * q / 127;

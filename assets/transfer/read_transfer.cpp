@@ -247,6 +247,7 @@ class BakedReader {
       if (!(value > (out.levels.empty() ? 0.0f : out.levels.back().sharpness)) || !std::isfinite(value)) fail("its levels do not get sharper");
       out.levels.push_back({value, static_cast<int>(integer(level, "resolution", 1, kMostTransferResolution, "a level"))});
     }
+    if (!isGeometric(out.levels)) fail("its levels are not spaced evenly");
     const auto columns = t.columns();
     t.mean = elements<float>(viewIndex(*extension_, "mean", kTransferExtension), columns, "the mean");
     requireFinite(t.mean, "the mean");

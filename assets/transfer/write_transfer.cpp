@@ -76,6 +76,7 @@ class FitCheck {
       require(level.resolution > 0 && level.resolution <= kMostTransferResolution && std::isfinite(level.sharpness) && level.sharpness > 0.0f,
               "a level is out of range");
     for (std::size_t l = 1; l < c.levels.size(); ++l) require(c.levels[l].sharpness > c.levels[l - 1].sharpness, "the levels do not get sharper");
+    require(isGeometric(c.levels), "the levels are not spaced evenly");
     require(t.mean.size() == t.columns(), "the mean has the wrong size");
     for (const float v : t.mean) require(std::isfinite(v), "the mean is not finite");
     require(t.eigenfunctions.empty() && t.weightScale.empty(), "there are global components beside clusters");

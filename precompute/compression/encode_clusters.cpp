@@ -12,8 +12,8 @@ namespace {
 constexpr std::size_t kRows = 4096;  // assigned at a time
 /// Of a function's energy, what rounding to blocks of 4 bits loses (measured on the built-in scene's functions).
 constexpr double kBlockLoss = 0.007;
-/// Rounding may add this part to the energy that the clusters leave out.
-constexpr double kLossShare = 0.05;
+/// Rounding all functions so may add at most this part of the energy that they leave out.
+constexpr double kLossShare = 0.5;
 
 float largest(const std::vector<float>& values) {
   float most = 0.0f;
@@ -25,7 +25,7 @@ TransferCluster rounded(const Cluster& cluster) {
   TransferCluster result;
   result.terms = cluster.terms;
   const auto columns = cluster.mean.size();
-  result.meanScale = std::max(largest(cluster.mean), 1e-30f);
+  result.meanScale = columns == 0 ? 0.0f : std::max(largest(cluster.mean), 1e-30f);
   for (const float m : cluster.mean) result.mean.push_back(static_cast<std::int16_t>(std::lrint(m / result.meanScale * 32767.0f)));
   for (std::size_t k = 0; k < static_cast<std::size_t>(cluster.terms); ++k) {
     const float* row = cluster.components.data() + k * columns;
@@ -54,21 +54,14 @@ void weightsOf(const TransferCluster& cluster, const float* row, float* weights)
   }
 }
 
-void packFunctions(const Pca& pca, const std::vector<Cluster>& clusters, std::size_t vertices, int bits, PackedFunctions& packed) {
+/// A function whose energy is small against what the functions leave out anyway is rounded coarsely.
+void packFunctions(const Pca& pca, int bits, PackedFunctions& packed) {
   const auto columns = pca.mean.size();
   double kept = 0.0;
-  std::size_t rows = 0;
-  for (const auto& cluster : clusters) {
-    rows += cluster.rows;
-    for (const double e : cluster.energy) kept += e;
-  }
-  // Energy is of the training rows; only ratios matter here. What the clusters' means explain is not known, so this is an upper bound.
-  double spread = 0.0;
-  for (const double e : pca.energy) spread += e;
-  const double discarded = std::max(pca.totalEnergy - spread, 1e-3 * spread);
-  (void)kept, (void)rows, (void)vertices;
+  for (const double e : pca.energy) kept += e;
+  const double discarded = std::max(pca.totalEnergy - kept, 1e-3 * kept);
   for (std::size_t d = 0; d < static_cast<std::size_t>(pca.terms); ++d) {
-    const bool coarse = kBlockLoss * pca.energy[d] * static_cast<double>(pca.terms) <= kLossShare * 10.0 * discarded;
+    const bool coarse = kBlockLoss * pca.energy[d] * pca.terms <= kLossShare * discarded;
     packed.append(pca.functions.data() + d * columns, columns, bits != 0 ? bits : coarse ? 4 : 8);
   }
 }
@@ -81,7 +74,7 @@ void encodeClusters(const Pca& pca, const std::vector<Cluster>& clusters, const 
   transfer.mean = pca.mean;
   transfer.terms = 0;
   out.weightBits = encoding.weightBits;
-  packFunctions(pca, clusters, coordinates.rows(), encoding.functionBits, out.functions);
+  packFunctions(pca, encoding.functionBits, out.functions);
   for (const auto& cluster : clusters) {
     out.clusters.push_back(rounded(cluster));
     transfer.terms = std::max(transfer.terms, cluster.terms);
