@@ -253,6 +253,7 @@ class BakedReader {
     requireFinite(t.mean, "the mean");
     readFunctions(c, columns, owner);
     readClusters(c, owner);
+    listOf(c, "primitives", owner);
   }
 
   void readFunctions(const json& c, std::size_t columns, const std::string& owner) {
@@ -321,8 +322,8 @@ class BakedReader {
 
   ClusteredVertices readClusteredVertices(std::size_t primitive, std::size_t count, const std::string& label) const {
     const auto& c = baked_.transfer.clustered;
-    const json& list = listOf((*extension_)["clustered"], "primitives", "\"clustered\"");
-    if (primitive >= list.size()) fail("\"clustered\" has too few primitives");
+    const json& list = (*extension_)["clustered"]["primitives"];
+    if (list.size() != baked_.scene.primitives.size()) fail("\"clustered\" has other primitives than the scene");
     const json& entry = list[primitive];
     ClusteredVertices out;
     out.cluster = elements<std::uint16_t>(viewIndex(entry, "clusters", label), count, "the list of clusters of " + label);
@@ -337,6 +338,8 @@ class BakedReader {
       const auto bytes = elements<std::int8_t>(viewIndex(entry, "weights", label), weights, what);
       out.weights.assign(bytes.begin(), bytes.end());
     }
+    for (const auto w : out.weights)
+      if (w < (c.weightBits == 8 ? -127 : -32767)) fail(label + " has a weight out of range");
     return out;
   }
 

@@ -52,6 +52,8 @@ class FitCheck {
     require(t.directionCount >= 0 && t.directionCount <= kMostTransferDirections && t.directionCount % 4 == 0,
             "the number of directions is out of range or not a multiple of 4");
     require(t.directions.size() == static_cast<std::size_t>(t.directionCount), "the directions are not as many as they say");
+    require(std::isfinite(t.directionSharpness) && t.directionSharpness >= 0.0f, "the direction sharpness is out of range");
+    for (const auto& d : t.directions) require(std::abs(glm::length(d) - 1.0f) <= 1e-3f, "a direction is not unit");
     if (!t.clustered.empty()) {
       checkClustered();
       return;
@@ -61,8 +63,6 @@ class FitCheck {
     require(t.eigenfunctions.size() == texels * static_cast<std::size_t>(t.terms), "the eigenfunctions have the wrong size");
     require(t.weightScale.size() == static_cast<std::size_t>(t.terms), "the weight scales have the wrong size");
     require(t.terms == 0 || t.resolution > 0, "there are terms without a resolution");
-    require(std::isfinite(t.directionSharpness) && t.directionSharpness >= 0.0f, "the direction sharpness is out of range");
-    for (const auto& d : t.directions) require(std::abs(glm::length(d) - 1.0f) <= 1e-3f, "a direction is not unit");
     for (const float v : t.mean) require(std::isfinite(v), "the mean is not finite");
     for (const float v : t.eigenfunctions) require(std::abs(v) <= 65504.0f, "an eigenfunction is not finite as a half");
     for (const float v : t.weightScale) require(v > 0.0f && std::isfinite(v), "a weight scale is not positive and finite");
@@ -72,6 +72,7 @@ class FitCheck {
     const auto& t = transfer_;
     const auto& c = t.clustered;
     require(t.resolution > 0, "there are clusters without a resolution");
+    require(c.levels.size() <= kMostTransferLevels, "there are too many levels");
     for (const auto& level : c.levels)
       require(level.resolution > 0 && level.resolution <= kMostTransferResolution && std::isfinite(level.sharpness) && level.sharpness > 0.0f,
               "a level is out of range");
@@ -90,8 +91,10 @@ class FitCheck {
       bytes += PackedFunctions::bytesOf(c.functions.bits[f], t.columns());
     }
     require(c.functions.data.size() == bytes, "the functions have the wrong size");
+    for (const float v : c.functions.unpack(t.columns())) require(std::isfinite(v), "a function is not finite");
     for (const auto& cluster : c.clusters) {
       require(cluster.terms >= 0 && cluster.terms <= t.terms, "a cluster has too many terms");
+      require(cluster.terms == 0 || c.functions.count() > 0, "a cluster has terms without functions");
       require(cluster.mean.size() == c.functions.count() && cluster.components.size() == c.functions.count() * static_cast<std::size_t>(cluster.terms) &&
                   cluster.weightScale.size() == static_cast<std::size_t>(cluster.terms),
               "a cluster has the wrong size");

@@ -3,6 +3,7 @@
 #include <Imath/half.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
@@ -114,6 +115,44 @@ Transfer anyTransfer(std::mt19937& random, const Scene& scene, int resolution, i
   return t;
 }
 
+/// What is stored of a row, in place of the global form.
+void makeClustered(std::mt19937& random, BakedScene& baked, const std::vector<VisibilityLevel>& levels, int functions,
+                   const std::vector<int>& terms, int weightBits) {
+  std::uniform_real_distribution<float> uniform(-1.0f, 1.0f);
+  Transfer& t = baked.transfer;
+  t.terms = *std::max_element(terms.begin(), terms.end());
+  t.eigenfunctions.clear();
+  t.weightScale.clear();
+  auto& c = t.clustered;
+  c.levels = levels;
+  c.weightBits = weightBits;
+  t.mean.clear();
+  for (std::size_t i = 0; i < t.columns(); ++i) t.mean.push_back(0.5f + 0.5f * uniform(random));
+  for (int f = 0; f < functions; ++f) {
+    std::vector<float> values;
+    for (std::size_t i = 0; i < t.columns(); ++i) values.push_back(uniform(random));
+    c.functions.append(values.data(), values.size(), f % 3 == 0 ? 16 : f % 3 == 1 ? 8 : 4);
+  }
+  const auto any = [&](int most) { return static_cast<int>(random() % static_cast<unsigned>(2 * most + 1)) - most; };
+  for (const int k : terms) {
+    auto& cluster = c.clusters.emplace_back();
+    cluster.terms = k;
+    cluster.meanScale = 0.1f;
+    for (int f = 0; f < functions; ++f) cluster.mean.push_back(static_cast<std::int16_t>(any(32767)));
+    for (int i = 0; i < k * functions; ++i) cluster.components.push_back(static_cast<std::int8_t>(any(127)));
+    for (int i = 0; i < k; ++i) cluster.weightScale.push_back((0.2f + 0.1f * uniform(random)) / (weightBits == 8 ? 127.0f : 32767.0f));
+  }
+  for (std::size_t p = 0; p < t.primitives.size(); ++p) {
+    auto& values = t.primitives[p];
+    values.weights.clear();
+    for (std::size_t v = 0; v < baked.scene.primitives[p].positions.size(); ++v)
+      values.clustered.cluster.push_back(static_cast<std::uint16_t>(random() % terms.size()));
+    const auto count = values.clustered.firstWeights(c.clusters).back();
+    for (std::size_t i = 0; i < count; ++i) values.clustered.weights.push_back(static_cast<std::int16_t>(any(weightBits == 8 ? 127 : 32767)));
+  }
+  decodeFractions(t);
+}
+
 }  // namespace
 
 BakedScene sampleBake(int terms) {
@@ -209,6 +248,23 @@ BakedScene tinyBake() {
   t.weightScale = {2.0f};
   t.primitives = {{{32767, 0, 0, 0, -32767, 0, 0, 0, 1, 0, 0, 0}, {255, 0, 128, 1, 2, 3, 4, 5, 6, 7, 8, 9}, {}}};
   baked.facts = {{"settings.terms", 1}};
+  return baked;
+}
+
+BakedScene clusteredBake(bool levels, int weightBits) {
+  BakedScene baked = sampleBake();
+  std::mt19937 random(20240608);
+  makeClustered(random, baked, levels ? std::vector<VisibilityLevel>{{3.0f, 4}, {10.5f, 6}} : std::vector<VisibilityLevel>{}, 7, {5, 0, 2}, weightBits);
+  return baked;
+}
+
+BakedScene tinyClusteredBake() {
+  BakedScene baked = tinyBake();
+  std::mt19937 random(20240609);
+  makeClustered(random, baked, {{3.0f, 1}, {10.5f, 2}}, 3, {1, 0}, 8);
+  baked.transfer.primitives[0].clustered.cluster = {0, 1, 0};
+  baked.transfer.primitives[0].clustered.weights = {127, -3};
+  decodeFractions(baked.transfer);
   return baked;
 }
 

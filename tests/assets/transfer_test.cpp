@@ -130,6 +130,24 @@ void expectSame(const BakedScene& a, const BakedScene& b) {
   expectSameBits(a.transfer.eigenfunctions, b.transfer.eigenfunctions, "eigenfunctions");
   expectSameBits(a.transfer.weightScale, b.transfer.weightScale, "weight scales");
   EXPECT_EQ(a.facts, b.facts);
+  const auto &c = a.transfer.clustered, &d = b.transfer.clustered;
+  EXPECT_EQ(c.levels, d.levels);
+  EXPECT_EQ(c.weightBits, d.weightBits);
+  expectSameBits(c.functions.bits, d.functions.bits, "function bits");
+  expectSameBits(c.functions.scale, d.functions.scale, "function scales");
+  expectSameBits(c.functions.data, d.functions.data, "functions");
+  ASSERT_EQ(c.clusters.size(), d.clusters.size());
+  for (std::size_t i = 0; i < c.clusters.size(); ++i) {
+    EXPECT_EQ(c.clusters[i].terms, d.clusters[i].terms);
+    EXPECT_EQ(c.clusters[i].meanScale, d.clusters[i].meanScale);
+    expectSameBits(c.clusters[i].mean, d.clusters[i].mean, "cluster mean");
+    expectSameBits(c.clusters[i].components, d.clusters[i].components, "components");
+    expectSameBits(c.clusters[i].weightScale, d.clusters[i].weightScale, "weight scales");
+  }
+  for (std::size_t i = 0; i < a.transfer.primitives.size(); ++i) {
+    expectSameBits(a.transfer.primitives[i].clustered.cluster, b.transfer.primitives[i].clustered.cluster, "clusters");
+    expectSameBits(a.transfer.primitives[i].clustered.weights, b.transfer.primitives[i].clustered.weights, "clustered weights");
+  }
 }
 
 /// A file taken apart, to be changed and put together again with all its sums right: what a faulty writer would make.
@@ -187,6 +205,35 @@ TEST(Transfer, RoundTripKeepsEveryBit) {
     expectSame(baked, readBytes(bytes));
     EXPECT_TRUE(bytes == bytesOf(readBytes(bytes))) << "writing what was read gives another file";
   }
+}
+
+TEST(Transfer, RoundTripOfClustersKeepsEveryBit) {
+  for (const bool levels : {false, true})
+    for (const int weightBits : {8, 16}) {
+      SCOPED_TRACE(weightBits);
+      const BakedScene baked = test::clusteredBake(levels, weightBits);
+      const auto bytes = bytesOf(baked);
+      expectSame(baked, readBytes(bytes));
+      EXPECT_TRUE(bytes == bytesOf(readBytes(bytes))) << "writing what was read gives another file";
+    }
+  expectSame(test::tinyClusteredBake(), readBytes(bytesOf(test::tinyClusteredBake())));
+}
+
+TEST(Transfer, ClustersWithoutFunctionsNeedNothingMore) {
+  BakedScene baked = test::tinyBake();
+  Transfer& t = baked.transfer;
+  t.terms = 0;
+  t.eigenfunctions.clear();
+  t.weightScale.clear();
+  t.primitives[0].weights.clear();
+  t.clustered.clusters.resize(1);
+  t.primitives[0].clustered.cluster = {0, 0, 0};
+  expectSame(baked, readBytes(bytesOf(baked)));
+  t.clustered.levels = {{4.0f, 2}};
+  t.mean.assign(t.columns(), 1.0f);
+  decodeFractions(t);
+  for (const auto v : t.primitives[0].visibility) EXPECT_EQ(v, 255);
+  expectSame(baked, readBytes(bytesOf(baked)));
 }
 
 TEST(Transfer, EigenfunctionsAreRoundedToTheNearestHalf) {
@@ -247,6 +294,23 @@ TEST(Transfer, BytesPerVertexCountsWhatIsStored) {
   EXPECT_EQ(t.bytesPerVertex(0), 0.0);
 }
 
+TEST(Transfer, BytesPerVertexOfClustersCountsWhatIsStored) {
+  for (const int weightBits : {8, 16}) {
+    const Transfer t = test::clusteredBake(true, weightBits).transfer;
+    double weights = 0.0;
+    for (const auto& p : t.primitives) weights += static_cast<double>(p.clustered.weights.size());
+    // 124 columns: mean of floats; 3 functions of 2 bytes a value, 2 of 1, 2 of 8 blocks of 9 bytes; their bits and scales; 8 directions; three
+    // clusters with terms, scale and mean; 7 components of 7 functions with a scale each. A cluster's number a vertex, and its weights.
+    const double shared = 4 * 124 + (3 * 248 + 2 * 124 + 2 * 72) + 7 * (1 + 4) + 96 + 3 * (2 + 4 + 14) + 7 * (7 + 4);
+    EXPECT_DOUBLE_EQ(t.bytesPerVertex(31), (shared + 31 * 2 + weights * weightBits / 8) / 31);
+  }
+  // Without levels each vertex has its fractions; 64 columns.
+  const Transfer t = test::clusteredBake(false).transfer;
+  double weights = 0.0;
+  for (const auto& p : t.primitives) weights += static_cast<double>(p.clustered.weights.size());
+  EXPECT_DOUBLE_EQ(t.bytesPerVertex(31), (256 + (3 * 128 + 2 * 64 + 2 * 36) + 35 + 96 + 60 + 77 + 31 * (2 + 8) + weights) / 31);
+}
+
 TEST(Transfer, FactsThatAreNotFiniteReadBackAsNan) {
   BakedScene baked = test::tinyBake();
   baked.facts["error.undefined"] = std::numeric_limits<double>::infinity();
@@ -277,45 +341,54 @@ TEST(Transfer, GoldenBytes) {
   EXPECT_EQ(checksumOf(std::span<const std::uint8_t>(bytes)), "6b1b42400a2fad3d") << std::string(chunks.json);
 }
 
+/// Small enough for every byte: both forms.
+std::vector<BakedScene> tinyBakes() { return {test::tinyBake(), test::tinyClusteredBake()}; }
+
 TEST(Transfer, EveryTruncatedPrefixIsRefused) {
   const Folder folder;
-  const auto bytes = bytesOf(test::tinyBake());
-  for (std::size_t length = 0; length < bytes.size(); ++length) {
-    // The loader reads the file into an allocation of exactly its size, so a sanitizer sees any step beyond it.
-    const auto path = test::put(folder / "a.glb", std::span(bytes).first(length));
-    const std::string error = errorOf([&] { readBakedScene(path); });
-    EXPECT_THAT(error, testing::AnyOf(HasSubstr("truncated"), HasSubstr("is empty"))) << length;
-    EXPECT_TRUE(test::failsCleanly([&] { loadScene(path); }));
+  for (const auto& baked : tinyBakes()) {
+    const auto bytes = bytesOf(baked);
+    for (std::size_t length = 0; length < bytes.size(); ++length) {
+      // The loader reads the file into an allocation of exactly its size, so a sanitizer sees any step beyond it.
+      const auto path = test::put(folder / "a.glb", std::span(bytes).first(length));
+      const std::string error = errorOf([&] { readBakedScene(path); });
+      EXPECT_THAT(error, testing::AnyOf(HasSubstr("truncated"), HasSubstr("is empty"))) << length;
+      EXPECT_TRUE(test::failsCleanly([&] { loadScene(path); }));
+    }
   }
 }
 
 TEST(Transfer, TruncatedPrefixWithItsLengthCorrectedIsRefused) {
   // As above, but the header tells the shorter length: every later check has to hold.
-  const auto bytes = bytesOf(test::tinyBake());
-  for (std::size_t length = 12; length < bytes.size(); ++length) {
-    std::vector<std::uint8_t> cut(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(length));
-    for (std::size_t i = 0; i < 4; ++i) cut[8 + i] = static_cast<std::uint8_t>(length >> (8 * i));
-    EXPECT_NE(errorOf([&] { readBytes(cut); }), "") << length;
+  for (const auto& baked : tinyBakes()) {
+    const auto bytes = bytesOf(baked);
+    for (std::size_t length = 12; length < bytes.size(); ++length) {
+      std::vector<std::uint8_t> cut(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(length));
+      for (std::size_t i = 0; i < 4; ++i) cut[8 + i] = static_cast<std::uint8_t>(length >> (8 * i));
+      EXPECT_NE(errorOf([&] { readBytes(cut); }), "") << length;
+    }
   }
 }
 
 TEST(Transfer, EveryFlippedByteIsNoticed) {
   const Folder folder;
-  auto bytes = bytesOf(test::tinyBake());
   std::mt19937 random(1);
-  for (std::size_t i = 0; i < bytes.size(); ++i) {
-    const auto flip = static_cast<std::uint8_t>(1 + random() % 255);
-    bytes[i] = static_cast<std::uint8_t>(bytes[i] ^ flip);
-    EXPECT_NE(errorOf([&] { readBakedScene(test::put(folder / "a.glb", bytes)); }), "") << "byte " << i << " xor " << int{flip};
-    bytes[i] = static_cast<std::uint8_t>(bytes[i] ^ flip);
+  for (const auto& baked : tinyBakes()) {
+    auto bytes = bytesOf(baked);
+    for (std::size_t i = 0; i < bytes.size(); ++i) {
+      const auto flip = static_cast<std::uint8_t>(1 + random() % 255);
+      bytes[i] = static_cast<std::uint8_t>(bytes[i] ^ flip);
+      EXPECT_NE(errorOf([&] { readBakedScene(test::put(folder / "a.glb", bytes)); }), "") << "byte " << i << " xor " << int{flip};
+      bytes[i] = static_cast<std::uint8_t>(bytes[i] ^ flip);
+    }
   }
 }
 
 // Random damage behind correct checksums: what reaches the checks of sizes, ranges and indices.
-TEST(Transfer, RandomDamageBehindCorrectSumsFailsCleanly) {
+void damageAtRandom(const BakedScene& baked, std::uint32_t seed) {
   const Folder folder;
-  const Parts original(bytesOf(test::sampleBake()));
-  std::mt19937 random(2);
+  const Parts original(bytesOf(baked));
+  std::mt19937 random(seed);
   int refused = 0;
   for (int round = 0; round < 3000; ++round) {
     Parts parts = original;
@@ -343,6 +416,43 @@ TEST(Transfer, RandomDamageBehindCorrectSumsFailsCleanly) {
     EXPECT_TRUE(test::failsCleanly([&] { loadScene(path); }));
   }
   EXPECT_GE(refused, 100) << "the damage hardly ever mattered: the test is too weak";
+}
+
+TEST(Transfer, RandomDamageBehindCorrectSumsFailsCleanly) {
+  damageAtRandom(test::sampleBake(), 2);
+  damageAtRandom(test::clusteredBake(true), 3);
+  damageAtRandom(test::clusteredBake(false, 16), 4);
+}
+
+// The transfer's own part is a small share of a file: here nothing else is damaged.
+TEST(Transfer, DamageInTheClusteredPartFailsCleanly) {
+  const Folder folder;
+  const Parts original(bytesOf(test::tinyClusteredBake()));
+  std::mt19937 random(5);
+  int refused = 0, read = 0;
+  for (int round = 0; round < 4000; ++round) {
+    Parts parts = original;
+    auto& clustered = parts.extension()["clustered"];
+    std::string text = clustered.dump();
+    for (auto i = random() % 3; i > 0; --i) text[random() % text.size()] = "0123456789-.,{}[]\"eE"[random() % 20];
+    auto damaged = nlohmann::ordered_json::parse(text, nullptr, false);
+    if (damaged.is_discarded()) continue;
+    clustered = damaged;
+    if (random() % 2 == 0) parts.extension()["terms"] = random() % 6;
+    for (auto i = random() % 4; i > 0; --i) parts.binary[random() % parts.binary.size()] = static_cast<std::uint8_t>(random());
+    parts.sumViews();
+    const auto path = test::put(folder / "a.glb", parts.bytes());
+    try {
+      const auto baked = readBakedScene(path);
+      ++read;
+      // What is read can be written: the writer checks all that a program relies on.
+      EXPECT_NO_THROW(writeBakedScene(folder / "b.glb", baked, "test"));
+    } catch (const Error&) {
+      ++refused;
+    }
+  }
+  EXPECT_GE(refused, 500);
+  EXPECT_GE(read, 500);
 }
 
 TEST(Transfer, ErrorsNameTheTrouble) {
@@ -446,6 +556,262 @@ TEST(Transfer, FaultyWritersAreFound) {
   Parts image = good;
   image.json["images"] = {{{"bufferView", 0}, {"mimeType", "image/png"}}};
   EXPECT_THAT(image.error(), HasSubstr("image 0 is neither PNG nor JPEG"));
+}
+
+TEST(Transfer, FaultyWritersOfClustersAreFound) {
+  const Parts good(bytesOf(test::tinyClusteredBake()));
+  const auto withMember = [&](const std::string& name, const nlohmann::ordered_json& value) {
+    Parts parts = good;
+    parts.extension()["clustered"][name] = value;
+    return parts.error();
+  };
+  using nlohmann::ordered_json;
+  EXPECT_THAT(withMember("levels", 3), HasSubstr("\"levels\""));
+  EXPECT_THAT(withMember("levels", ordered_json::array({{{"sharpness", 3}, {"resolution", 0}}})), HasSubstr("\"resolution\" of a level"));
+  EXPECT_THAT(withMember("levels", ordered_json::array({{{"sharpness", 3}, {"resolution", 1}}, {{"sharpness", 3}, {"resolution", 2}}})),
+              HasSubstr("do not get sharper"));
+  EXPECT_THAT(withMember("levels", ordered_json::array({{{"sharpness", -1}, {"resolution", 1}}})), HasSubstr("do not get sharper"));
+  EXPECT_THAT(withMember("levels", ordered_json::array({{{"sharpness", 3}, {"resolution", 4096}}})), HasSubstr("the mean takes"));
+  auto uneven = ordered_json::array();
+  for (const double sharpness : {3.0, 10.5, 21.0}) uneven.push_back({{"sharpness", sharpness}, {"resolution", 1}});
+  EXPECT_THAT(withMember("levels", uneven), HasSubstr("not spaced evenly"));
+  auto many = ordered_json::array();
+  for (int i = 1; i <= 17; ++i) many.push_back({{"sharpness", i}, {"resolution", 1}});
+  EXPECT_THAT(withMember("levels", many), HasSubstr("more than 16 levels"));
+  EXPECT_THAT(withMember("functionCount", 5000), HasSubstr("\"functionCount\""));
+  EXPECT_THAT(withMember("functionCount", -1), HasSubstr("\"functionCount\""));
+  EXPECT_THAT(withMember("functionCount", 2), HasSubstr("instead of"));
+  EXPECT_THAT(withMember("functionCount", 0), HasSubstr("without functions"));
+  EXPECT_THAT(withMember("clusterCount", 0), HasSubstr("\"clusterCount\""));
+  EXPECT_THAT(withMember("clusterCount", 65536), HasSubstr("\"clusterCount\""));
+  EXPECT_THAT(withMember("clusterCount", 3), HasSubstr("instead of"));
+  EXPECT_THAT(withMember("weightBits", 12), HasSubstr("neither 8 nor 16"));
+  EXPECT_THAT(withMember("weightBits", 16), HasSubstr("the list of weights of"));
+  EXPECT_THAT(withMember("functions", 99), HasSubstr("\"functions\""));
+  EXPECT_THAT(withMember("primitives", ordered_json::array()), HasSubstr("other primitives"));
+  auto two = good.json["extensions"]["CHIARO_radiance_transfer"]["clustered"]["primitives"];
+  two.push_back(two[0]);
+  EXPECT_THAT(withMember("primitives", two), HasSubstr("other primitives"));
+  Parts none = good;
+  none.extension()["clustered"] = 1;
+  EXPECT_THAT(none.error(), HasSubstr("\"levels\""));
+  Parts flat = good;
+  flat.extension()["resolution"] = 0;
+  EXPECT_THAT(flat.error(), HasSubstr("\"resolution\""));
+  Parts few = good;
+  few.extension()["terms"] = 0;
+  EXPECT_THAT(few.error(), HasSubstr("more terms than"));
+
+  const auto withByte = [&](const ordered_json& view, std::size_t offset, std::vector<std::uint8_t> bytes) {
+    Parts parts = good;
+    std::copy(bytes.begin(), bytes.end(), parts.binary.begin() + static_cast<std::ptrdiff_t>(parts.offsetOfView(view.get<int>()) + offset));
+    parts.sumViews();
+    return parts.error();
+  };
+  const auto clustered = Parts(good).extension()["clustered"];
+  const std::vector<std::uint8_t> nan{0, 0, 0xC0, 0x7F}, negative{0, 0, 0x80, 0xBF};
+  EXPECT_THAT(withByte(clustered["functionBits"], 0, {5}), HasSubstr("5 bits a value"));
+  EXPECT_THAT(withByte(clustered["functionScales"], 4, nan), HasSubstr("function scales is not finite at element 1"));
+  EXPECT_THAT(withByte(clustered["functionScales"], 4, negative), HasSubstr("a function scale is not positive"));
+  EXPECT_THAT(withByte(clustered["functions"], 0, {0x00, 0x7C}), HasSubstr("the list of functions is not finite at element 0")) << "a half";
+  EXPECT_THAT(withByte(clustered["clusterTerms"], 0, {0, 1}), HasSubstr("more terms than"));
+  EXPECT_THAT(withByte(clustered["clusterTerms"], 2, {1, 0}), HasSubstr("instead of"));
+  EXPECT_THAT(withByte(clustered["clusterMeanScales"], 0, nan), HasSubstr("mean scales is not finite"));
+  EXPECT_THAT(withByte(clustered["clusterMeanScales"], 0, negative), HasSubstr("a mean scale is negative"));
+  EXPECT_THAT(withByte(clustered["weightScales"], 0, nan), HasSubstr("weight scales is not finite"));
+  EXPECT_THAT(withByte(clustered["weightScales"], 0, {0, 0, 0, 0}), HasSubstr("a weight scale is not positive"));
+  EXPECT_THAT(withByte(clustered["primitives"][0]["clusters"], 0, {2, 0}), HasSubstr("names cluster 2 of 2"));
+  EXPECT_THAT(withByte(clustered["primitives"][0]["clusters"], 0, {1, 0}), HasSubstr("the list of weights of"));
+  EXPECT_THAT(withByte(clustered["primitives"][0]["weights"], 0, {0x80}), HasSubstr("a weight out of range"));
+  EXPECT_THAT(withByte(Parts(good).extension()["mean"], 0, nan), HasSubstr("the mean is not finite at element 0"));
+}
+
+TEST(Transfer, WriterRefusesClustersThatDoNotFit) {
+  const Folder folder;
+  const auto refuses = [&](auto change) {
+    BakedScene baked = test::clusteredBake(true);
+    change(baked, baked.transfer.clustered);
+    const std::string error = errorOf([&] { writeBakedScene(folder / "a.glb", baked, "test"); }, ExitCode::failed);
+    EXPECT_FALSE(std::filesystem::exists(folder / "a.glb"));
+    return error;
+  };
+  using B = BakedScene&;
+  using C = ClusteredTransfer&;
+  EXPECT_THAT(refuses([](B b, C) { b.transfer.resolution = 0; }), HasSubstr("resolution"));
+  EXPECT_THAT(refuses([](B, C c) { c.levels[1].sharpness = 3.0f; }), HasSubstr("sharper"));
+  EXPECT_THAT(refuses([](B, C c) { c.levels.push_back({21.0f, 1}); }), HasSubstr("not spaced evenly"));
+  EXPECT_THAT(refuses([](B, C c) { c.levels[0].resolution = 0; }), HasSubstr("level is out of range"));
+  EXPECT_THAT(refuses([](B, C c) {
+                c.levels.clear();
+                for (int i = 1; i <= 17; ++i) c.levels.push_back({static_cast<float>(i), 1});
+              }),
+              HasSubstr("too many levels"));
+  EXPECT_THAT(refuses([](B b, C) { b.transfer.mean.pop_back(); }), HasSubstr("mean has the wrong size"));
+  EXPECT_THAT(refuses([](B b, C) { b.transfer.mean[3] = std::nanf(""); }), HasSubstr("mean is not finite"));
+  EXPECT_THAT(refuses([](B b, C) { b.transfer.directions[0] *= 2.0f; }), HasSubstr("direction is not unit"));
+  EXPECT_THAT(refuses([](B b, C) { b.transfer.directionSharpness = std::nanf(""); }), HasSubstr("direction sharpness"));
+  EXPECT_THAT(refuses([](B b, C) { b.transfer.weightScale.push_back(1.0f); }), HasSubstr("beside clusters"));
+  EXPECT_THAT(refuses([](B, C c) { c.weightBits = 12; }), HasSubstr("8 nor 16"));
+  EXPECT_THAT(refuses([](B, C c) { c.functions.bits[2] = 5; }), HasSubstr("number of bits"));
+  EXPECT_THAT(refuses([](B, C c) { c.functions.scale[2] = 0.0f; }), HasSubstr("function scale"));
+  EXPECT_THAT(refuses([](B, C c) { c.functions.scale.pop_back(); }), HasSubstr("function scales"));
+  EXPECT_THAT(refuses([](B, C c) { c.functions.data.pop_back(); }), HasSubstr("functions have the wrong size"));
+  EXPECT_THAT(refuses([](B, C c) { c.functions.data[1] = 0x7C; }), HasSubstr("function is not finite")) << "a half";
+  EXPECT_THAT(refuses([](B b, C) { b.transfer.terms = 4; }), HasSubstr("too many terms"));
+  EXPECT_THAT(refuses([](B, C c) { c.clusters[0].components.pop_back(); }), HasSubstr("cluster has the wrong size"));
+  EXPECT_THAT(refuses([](B, C c) { c.clusters[0].weightScale[1] = 0.0f; }), HasSubstr("weight scale"));
+  EXPECT_THAT(refuses([](B, C c) { c.clusters[0].meanScale = -1.0f; }), HasSubstr("mean"));
+  EXPECT_THAT(refuses([](B b, C) { b.transfer.primitives[1].clustered.cluster.pop_back(); }), HasSubstr("one cluster a vertex"));
+  EXPECT_THAT(refuses([](B b, C) { b.transfer.primitives[1].clustered.cluster[0] = 3; }), HasSubstr("cluster that does not exist"));
+  EXPECT_THAT(refuses([](B b, C) { b.transfer.primitives[0].clustered.weights.pop_back(); }), HasSubstr("number of weights"));
+  EXPECT_THAT(refuses([](B b, C) { b.transfer.primitives[0].clustered.weights[0] = 128; }), HasSubstr("weight out of range"));
+  EXPECT_THAT(refuses([](B b, C) { b.transfer.primitives[0].weights.push_back(0); }), HasSubstr("number of weights"));
+  EXPECT_THAT(refuses([](B, C c) {
+                c.functions = {};
+                for (auto& cluster : c.clusters) cluster.mean.clear(), cluster.components.clear();
+              }),
+              HasSubstr("without functions"));
+}
+
+std::vector<float> unpacked(const std::vector<float>& values, int bits) {
+  PackedFunctions packed;
+  packed.append(values.data(), values.size(), bits);
+  EXPECT_EQ(packed.count(), 1u);
+  EXPECT_EQ(packed.data.size(), PackedFunctions::bytesOf(bits, values.size()));
+  EXPECT_TRUE(packed.scale[0] > 0.0f && std::isfinite(packed.scale[0]));
+  return packed.unpack(values.size());
+}
+
+/// Half a step of each value: of 11 bits of a half (2^-25 where it is denormal), of 127 to the largest of all, of 7 to what the block's byte holds,
+/// which is rounded up to one of 255. A millionth for the arithmetic.
+float halfStep(const std::vector<float>& values, std::size_t i, int bits) {
+  const auto largest = [&](std::size_t first, std::size_t end) {
+    float most = 0.0f;
+    for (std::size_t j = first; j < std::min(end, values.size()); ++j) most = std::max(most, std::abs(values[j]));
+    return most;
+  };
+  if (bits == 16) return std::max(std::abs(values[i]) * 0x1p-11f, 0x1p-25f) * 1.000001f;
+  const float most = std::max(largest(0, values.size()), 1e-30f);
+  if (bits == 8) return most / 127.0f * 0.500001f;
+  return (largest(i / 16 * 16, i / 16 * 16 + 16) + most / 255.0f) / 7.0f * 0.500001f;
+}
+
+TEST(PackedFunctions, AreWithinHalfAStep) {
+  std::mt19937 random(6);
+  std::normal_distribution<float> normal;
+  for (const int bits : {16, 8, 4})
+    for (const std::size_t columns : {1, 2, 15, 16, 17, 31, 33, 100})
+      for (const float scale : {1e-40f, 1e-20f, 1e-3f, 1.0f, 300.0f}) {
+        std::vector<float> values;
+        // Blocks of very different size, and some all zero.
+        for (std::size_t i = 0; i < columns; ++i) values.push_back(i / 16 % 3 == 2 ? 0.0f : scale * normal(random) * (i / 16 % 3 == 1 ? 1e-3f : 1.0f));
+        const auto back = unpacked(values, bits);
+        ASSERT_EQ(back.size(), columns);
+        for (std::size_t i = 0; i < columns; ++i)
+          EXPECT_LE(std::abs(back[i] - values[i]), halfStep(values, i, bits)) << bits << " bits, " << i << " of " << columns << ", scale " << scale;
+      }
+}
+
+TEST(PackedFunctions, Extremes) {
+  for (const int bits : {16, 8, 4}) {
+    for (const std::size_t columns : {1, 16, 19}) {
+      for (const float v : unpacked(std::vector<float>(columns, 0.0f), bits)) EXPECT_EQ(v, 0.0f);
+      for (const float one : {1.0f, -1.0f, 0.37f})
+        for (const float v : unpacked(std::vector<float>(columns, one), bits)) EXPECT_LE(std::abs(v - one), 2e-4f) << "the largest value is nearly exact";
+    }
+    EXPECT_TRUE(unpacked({}, bits).empty());
+  }
+  const auto peak = unpacked({1e30f, -1e30f, 5e29f}, 8);
+  EXPECT_LE(std::abs(peak[1] / -1e30f - 1.0f), 1e-6f);
+}
+
+TEST(PackedFunctions, OfSeveralKindsLieBehindOneAnother) {
+  PackedFunctions packed;
+  std::vector<std::vector<float>> functions;
+  std::mt19937 random(7);
+  std::normal_distribution<float> normal;
+  for (const int bits : {4, 16, 8, 4, 4, 8, 16}) {
+    functions.emplace_back();
+    for (int i = 0; i < 21; ++i) functions.back().push_back(normal(random));
+    packed.append(functions.back().data(), 21, bits);
+  }
+  const auto all = packed.unpack(21);
+  ASSERT_EQ(all.size(), 7u * 21u);
+  for (std::size_t f = 0; f < 7; ++f)
+    for (std::size_t i = 0; i < 21; ++i) EXPECT_LE(std::abs(all[f * 21 + i] - functions[f][i]), halfStep(functions[f], i, packed.bits[f]));
+}
+
+TEST(ClusterMaps, AreSumsOfFunctions) {
+  const Transfer t = test::clusteredBake(true).transfer;
+  const auto columns = t.columns(), count = t.clustered.functions.count();
+  EXPECT_EQ(columns, 64u + 16u + 36u + 8u);
+  const auto functions = t.clustered.functions.unpack(columns);
+  const auto all = clusterMaps(t.clustered.clusters, functions, t.mean, 0, columns);
+  ASSERT_EQ(all.size(), (3u + 7u) * columns);
+  std::size_t map = 0;
+  for (const auto& cluster : t.clustered.clusters)
+    for (int k = -1; k < cluster.terms; ++k, ++map)
+      for (std::size_t j = 0; j < columns; ++j) {
+        double sum = k < 0 ? static_cast<double>(t.mean[j]) : 0.0;
+        for (std::size_t d = 0; d < count; ++d)
+          sum += static_cast<double>(functions[d * columns + j]) *
+                 (k < 0 ? static_cast<double>(cluster.meanScale) * cluster.mean[d] / 32767.0
+                        : cluster.components[static_cast<std::size_t>(k) * count + d] / 127.0);
+        ASSERT_LE(std::abs(static_cast<double>(all[map * columns + j]) - sum), 1e-5) << "single precision sums of " << count;
+      }
+  // Any part of the columns is that part of the whole.
+  for (const auto& [begin, end] : {std::pair<std::size_t, std::size_t>{0, 1}, {5, 124}, {123, 124}, {60, 60}}) {
+    const auto part = clusterMaps(t.clustered.clusters, functions, t.mean, begin, end);
+    ASSERT_EQ(part.size(), 10 * (end - begin));
+    for (std::size_t m = 0; m < 10; ++m)
+      for (std::size_t j = begin; j < end; ++j) ASSERT_LE(std::abs(part[m * (end - begin) + j - begin] - all[m * columns + j]), 1e-6f);
+  }
+}
+
+TEST(ClusterMaps, LongRowsAreTheSame) {
+  // Longer than a strip, so that the strips must meet.
+  std::vector<float> functions, mean;
+  for (int i = 0; i < 300; ++i) mean.push_back(static_cast<float>(i));
+  for (int i = 0; i < 5 * 300; ++i) functions.push_back(static_cast<float>(i % 300));
+  const TransferCluster cluster{.terms = 1, .meanScale = 0.0f, .mean = {0, 0, 0, 0, 0}, .components = {127, 127, 127, 127, 127}, .weightScale = {1}};
+  const auto maps = clusterMaps({cluster, cluster}, functions, mean, 7, 300);
+  for (std::size_t m = 0; m < 4; ++m)
+    for (std::size_t j = 0; j < 293; ++j) ASSERT_EQ(maps[m * 293 + j], (m % 2 == 0 ? 1.0f : 5.0f) * static_cast<float>(7 + j));
+}
+
+TEST(ClusteredVertices, FirstWeights) {
+  std::vector<TransferCluster> clusters(3);
+  clusters[0].terms = 3;
+  clusters[2].terms = 5;
+  EXPECT_EQ((ClusteredVertices{.cluster = {2, 1, 0, 0}, .weights = {}}.firstWeights(clusters)), (std::vector<std::size_t>{0, 5, 5, 8, 11}));
+  EXPECT_EQ(ClusteredVertices{}.firstWeights(clusters), std::vector<std::size_t>{0});
+}
+
+TEST(DecodedFractions, AreTheRowsLastColumns) {
+  const Transfer t = test::clusteredBake(true).transfer;
+  const auto columns = t.columns();
+  const auto functions = t.clustered.functions.unpack(columns);
+  std::size_t clamped = 0, between = 0;
+  for (const auto& p : t.primitives) {
+    const auto first = p.clustered.firstWeights(t.clustered.clusters);
+    for (std::size_t v = 0; v < p.clustered.cluster.size(); ++v) {
+      const auto& cluster = t.clustered.clusters[p.clustered.cluster[v]];
+      for (std::size_t j = 0; j < 8; ++j) {
+        double row = static_cast<double>(t.mean[columns - 8 + j]);
+        for (std::size_t d = 0; d < 7; ++d) {
+          double factor = static_cast<double>(cluster.meanScale) * cluster.mean[d] / 32767.0;
+          for (std::size_t k = 0; k < cluster.weightScale.size(); ++k)
+            factor += static_cast<double>(cluster.weightScale[k]) * p.clustered.weights[first[v] + k] * cluster.components[7 * k + d] / 127.0;
+          row += factor * static_cast<double>(functions[d * columns + columns - 8 + j]);
+        }
+        (row <= 0.0 || row >= 1.0 ? clamped : between) += 1;
+        // Rounded to the nearest byte; 1e-3 of one for what single precision may turn over.
+        EXPECT_LE(std::abs(p.visibility[v * 8 + j] - 255.0 * std::clamp(row, 0.0, 1.0)), 0.501);
+      }
+    }
+  }
+  EXPECT_GT(clamped, 5u);
+  EXPECT_GT(between, 50u);
 }
 
 TEST(Transfer, WriterRefusesPartsThatDoNotFit) {
