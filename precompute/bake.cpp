@@ -139,6 +139,12 @@ TransferFacts factsOf(const BakeSettings& settings, const BakeReport& report) {
       {"settings.seed", settings.seed},
       {"rays_traced", static_cast<double>(report.raysTraced)},
   };
+  if (settings.compression != Compression::pca) {
+    facts["settings.clusters"] = settings.clusters;
+    facts["settings.functions"] = settings.functions;
+    facts["settings.weight_bits"] = settings.weightBits;
+    facts["settings.function_bits"] = settings.functionBits;
+  }
   for (const auto& [name, value] : report.error) facts["error." + name] = value;
   return facts;
 }

@@ -92,10 +92,11 @@ PrefilteredVisibility::Scratch PrefilteredVisibility::scratch() const {
   Scratch s;
   for (const auto& g : grids_) s.mass.emplace_back(g.direction.size() * kBatch);
   s.seen = AlignedFloats(size_ * kBatch);
+  s.all = AlignedFloats(size_ * kBatch);
   return s;
 }
 
-/// Solid angle that is seen on one side of the horizon, per texel of each grid.
+/// Solid angle on one side of the horizon, what is seen of it or all, per texel of each grid.
 void PrefilteredVisibility::fillMass(std::size_t count, const Viewpoint* viewpoints, const TexelBits* above, const TexelBits* visible,
                                      bool back, Scratch& scratch) const {
   float* finest = scratch.mass[0].data();
@@ -104,7 +105,7 @@ void PrefilteredVisibility::fillMass(std::size_t count, const Viewpoint* viewpoi
     if (back && !viewpoints[i].doubleSided) continue;
     for (std::size_t tile = 0; tile < source_.tileCount; ++tile) {
       const unsigned side = back ? static_cast<std::uint16_t>(~above[i][tile]) : above[i][tile];
-      unsigned bits = visible[i][tile] & side;
+      unsigned bits = visible != nullptr ? visible[i][tile] & side : side;
       if (bits == 0xffff && share_ <= 1.0f / 16.0f) {  // the whole tile is within one texel
         finest[finestOf_[16 * tile] * kBatch + i] += 16.0f * share_;
         continue;
@@ -129,10 +130,10 @@ void PrefilteredVisibility::fillMass(std::size_t count, const Viewpoint* viewpoi
   }
 }
 
-void PrefilteredVisibility::gather(Scratch& scratch) const {
+void PrefilteredVisibility::gather(const Scratch& scratch, AlignedFloats& sums) const {
   runVectorised([&]<typename Vector>() CHIARO_INLINE {
     constexpr int kParts = static_cast<int>(kBatch) / kWidth<Vector>;
-    float* out = scratch.seen.data();
+    float* out = sums.data();
     for (const auto& level : levels_) {
       const float* mass = scratch.mass[level.grid].data();
       const std::uint32_t *texel = level.tapTexel.data(), *first = level.firstTap.data();
@@ -157,9 +158,10 @@ void PrefilteredVisibility::store(const Viewpoint& viewpoint, bool back, std::si
     for (std::size_t p = 0; p < level.axis.size(); ++p) {
       const float sine = glm::dot(n, level.axis[p]);
       if (viewpoint.doubleSided && sine < 0.0f) continue;  // the other side's
-      const float all = shareAt(level.shareAbove, sine);
       const std::size_t j = level.first + p;
-      out[j] = all > kLeastAbove ? std::clamp(scratch.seen[j * kBatch + lane] / all, 0.0f, 1.0f) : -1.0f;
+      // Both are sums over the same texels, so that what the horizon's own texels get wrong cancels: an open vertex has exactly 1.
+      const float all = scratch.all[j * kBatch + lane];
+      out[j] = shareAt(level.shareAbove, sine) > kLeastAbove && all > 0.0f ? std::min(scratch.seen[j * kBatch + lane] / all, 1.0f) : -1.0f;
     }
 }
 
@@ -184,7 +186,9 @@ void PrefilteredVisibility::operator()(std::size_t count, const Viewpoint* viewp
   for (const bool back : {false, true}) {
     if (back && !anyBack) break;
     fillMass(count, viewpoints, above, visible, back, scratch);
-    gather(scratch);
+    gather(scratch, scratch.seen);
+    fillMass(count, viewpoints, above, nullptr, back, scratch);
+    gather(scratch, scratch.all);
     for (std::size_t i = 0; i < count; ++i)
       if (!back || viewpoints[i].doubleSided) store(viewpoints[i], back, i, scratch, out + i * stride);
   }

@@ -29,7 +29,7 @@ class PrefilteredVisibility {
   /// What one call works in; one a thread.
   struct Scratch {
     std::vector<AlignedFloats> mass;  ///< by grid of the pyramid: #texels by kBatch
-    AlignedFloats seen;               ///< #size by kBatch
+    AlignedFloats seen, all;          ///< #size by kBatch
   };
   Scratch scratch() const;
 
@@ -54,8 +54,9 @@ class PrefilteredVisibility {
     std::vector<float> tapWeight;         ///< SG, normalised over the sphere
     std::vector<float> shareAbove;        ///< table over dot(normal, axis) in [-1, 1]
   };
+  /// visible: null for all of the side.
   void fillMass(std::size_t count, const Viewpoint* viewpoints, const TexelBits* above, const TexelBits* visible, bool back, Scratch& scratch) const;
-  void gather(Scratch& scratch) const;
+  void gather(const Scratch& scratch, AlignedFloats& sums) const;
   void store(const Viewpoint& viewpoint, bool back, std::size_t lane, const Scratch& scratch, float* out) const;
   void mirrorHidden(const Viewpoint& viewpoint, float* out) const;
 
