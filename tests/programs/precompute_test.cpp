@@ -137,7 +137,9 @@ TEST(Precompute, WritesASceneAndItsFigures) {
   EXPECT_EQ(json.at("triangles"), 2 * (12 * 12 + 8 * 8));
   EXPECT_EQ(json.at("resolution"), 16);
   EXPECT_EQ(json.at("terms"), baked.transfer.terms);
-  EXPECT_EQ(json.at("rays_traced"), baked.scene.vertexCount() * 128) << "half of 16 x 16: every normal is up";
+  // Half of 16 x 16 everywhere, as every normal is up; less than half of 64 x 64, which is traced only where visibility changes.
+  EXPECT_GE(json.at("rays_traced"), baked.scene.vertexCount() * 128);
+  EXPECT_LE(json.at("rays_traced"), baked.scene.vertexCount() * 1024);
   EXPECT_GT(json.at("bytes_per_vertex").get<double>(), 0.0);
   EXPECT_GT(json.at("peak_memory_bytes").get<double>(), 1e6);
   for (const char* key : {"visibility", "ssdf", "compression", "total"}) EXPECT_GT(json.at("seconds").at(key).get<double>(), 0.0) << key;
