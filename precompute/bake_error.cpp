@@ -9,6 +9,7 @@
 #include <random>
 
 #include "precompute/compression/encode.h"
+#include "precompute/lobe_samples.h"
 #include "precompute/parallel.h"
 #include "shaders/cpp/lobe.h"
 
@@ -23,26 +24,6 @@ constexpr std::size_t kRowBlock = 128;
 constexpr std::size_t kStepsPerSample = 64;  // a sampled vertex takes about as long as that many others
 
 using RowMatrix = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
-/// Uniform in [0, 1), the same on every standard library.
-double uniform(std::mt19937& random) { return static_cast<double>(random()) * 0x1p-32; }
-
-glm::dvec3 uniformDirection(std::mt19937& random) {
-  const double z = 2.0 * uniform(random) - 1.0, phi = 2.0 * std::numbers::pi * uniform(random), r = std::sqrt(1.0 - z * z);
-  return {r * std::cos(phi), r * std::sin(phi), z};
-}
-
-/// Row of the PrimitiveTransfer weights of vertex `index` of the whole scene.
-const std::int16_t* weightsOf(const Transfer& transfer, std::size_t index) {
-  const auto stride = static_cast<std::size_t>(transfer.paddedTerms());
-  if (stride == 0) return nullptr;
-  for (const auto& primitive : transfer.primitives) {
-    const auto count = primitive.weights.size() / stride;
-    if (index < count) return primitive.weights.data() + index * stride;
-    index -= count;
-  }
-  return nullptr;
-}
 
 std::vector<std::size_t> sampleVertices(std::size_t vertexCount, std::size_t wanted, std::uint32_t seed) {
   std::vector<std::size_t> all(vertexCount);
@@ -129,16 +110,6 @@ double quantisationRms(const TracedSignal& traced, const Pca& pca, const Transfe
   return std::sqrt(sum / (4.0 * std::numbers::pi * static_cast<double>(vertices.size())));
 }
 
-/// Ray i of kRays of a normalised lobe (inverse of its cumulative distribution in strata, golden angle about the axis).
-glm::vec3 lobeDirection(glm::dvec3 axis, double sharpness, std::uint32_t i, double turn) {
-  const double u = (static_cast<double>(i) + 0.5) / kRays;
-  const double t = -std::log1p(u * std::expm1(-2.0 * sharpness)) / sharpness;  // 1 - cos
-  const double sine = std::sqrt(std::max(t * (2.0 - t), 0.0)), phi = turn + i * 2.39996322972865332;
-  const auto helper = std::abs(axis.x) < 0.7 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
-  const auto x = glm::normalize(glm::cross(helper, axis)), y = glm::cross(axis, x);
-  return glm::vec3(glm::normalize((1.0 - t) * axis + sine * (std::cos(phi) * x + std::sin(phi) * y)));
-}
-
 /// On the axis' side of the surface; beyond the horizon the truth is the mirror image of what is before it.
 double tracedFraction(const RayScene& rays, const Viewpoint& viewpoint, glm::dvec3 axis, double sharpness, double turn) {
   const bool front = glm::dot(glm::vec3(axis), viewpoint.normal) > 0.0f;
@@ -146,7 +117,7 @@ double tracedFraction(const RayScene& rays, const Viewpoint& viewpoint, glm::dve
   const auto origin = front ? viewpoint.front : viewpoint.back;
   std::uint32_t seen = 0;
   for (std::uint32_t i = 0; i < kRays; ++i) {
-    auto w = lobeDirection(axis, sharpness, i, turn);
+    auto w = lobeDirection(axis, sharpness, i, kRays, turn);
     const float cosine = glm::dot(w, n);
     if (cosine < 0.0f) w -= 2.0f * cosine * n;
     if (!rays.occluded(origin, w, 0.0f, std::numeric_limits<float>::infinity())) ++seen;

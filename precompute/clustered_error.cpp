@@ -8,6 +8,7 @@
 #include <numbers>
 #include <random>
 
+#include "precompute/lobe_samples.h"
 #include "precompute/parallel.h"
 #include "precompute/transfer_lookup.h"
 #include "shaders/cpp/lobe.h"
@@ -20,23 +21,11 @@ constexpr std::size_t kVertices = 256;
 constexpr std::size_t kAxes = 16;
 constexpr std::uint32_t kRays = 512;
 
-double uniform(std::mt19937& random) { return static_cast<double>(random()) * 0x1p-32; }
-
-glm::dvec3 uniformDirection(std::mt19937& random) {
-  const double z = 2.0 * uniform(random) - 1.0, phi = 2.0 * std::numbers::pi * uniform(random), r = std::sqrt(1.0 - z * z);
-  return {r * std::cos(phi), r * std::sin(phi), z};
-}
-
 /// Share of the lobe's rays that leave above the horizon and meet nothing.
 double tracedFraction(const RayScene& rays, glm::vec3 origin, glm::vec3 n, glm::dvec3 axis, double sharpness, double turn) {
-  const auto helper = std::abs(axis.x) < 0.7 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
-  const auto x = glm::normalize(glm::cross(helper, axis)), y = glm::cross(axis, x);
   std::uint32_t seen = 0;
   for (std::uint32_t i = 0; i < kRays; ++i) {
-    const double u = (static_cast<double>(i) + 0.5) / kRays;
-    const double t = -std::log1p(u * std::expm1(-2.0 * sharpness)) / sharpness;  // 1 - cos, in strata
-    const double sine = std::sqrt(std::max(t * (2.0 - t), 0.0)), phi = turn + i * 2.39996322972865332;
-    const glm::vec3 w(glm::normalize((1.0 - t) * axis + sine * (std::cos(phi) * x + std::sin(phi) * y)));
+    const auto w = lobeDirection(axis, sharpness, i, kRays, turn);
     if (glm::dot(w, n) > 0.0f && !rays.occluded(origin, w, 0.0f, std::numeric_limits<float>::infinity())) ++seen;
   }
   return static_cast<double>(seen) / kRays;

@@ -32,6 +32,17 @@ void encodePca(const Pca& pca, const Scene& scene, Transfer& transfer) {
   }
 }
 
+const std::int16_t* weightsOf(const Transfer& transfer, std::size_t index) {
+  const auto stride = static_cast<std::size_t>(transfer.paddedTerms());
+  if (stride == 0) return nullptr;
+  for (const auto& primitive : transfer.primitives) {
+    const auto count = primitive.weights.size() / stride;
+    if (index < count) return primitive.weights.data() + index * stride;
+    index -= count;
+  }
+  return nullptr;
+}
+
 void decodeSsdf(const Transfer& transfer, const std::int16_t* weights, float* ssdf) {
   const auto texels = transfer.mean.size();
   std::copy(transfer.mean.begin(), transfer.mean.end(), ssdf);

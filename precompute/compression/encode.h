@@ -13,6 +13,9 @@ namespace chiaro {
 /// largest one of their term.
 void encodePca(const Pca& pca, const Scene& scene, Transfer& transfer);
 
+/// Row of the PrimitiveTransfer weights of vertex `index` of the whole scene; null where there are no terms.
+const std::int16_t* weightsOf(const Transfer& transfer, std::size_t index);
+
 /// The SSDF (resolution^2 values, radians) that the asset holds for a vertex, given its row of PrimitiveTransfer::weights.
 void decodeSsdf(const Transfer& transfer, const std::int16_t* weights, float* ssdf);
 

@@ -24,14 +24,6 @@ GLint wrapMode(Wrap wrap) {
   return GL_REPEAT;
 }
 
-void requireStorage(std::size_t bytes, const char* what) {
-  GLint64 limit = 0;
-  glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &limit);
-  if (bytes > static_cast<std::size_t>(limit))
-    throw Error(ExitCode::failed, "OpenGL", std::string("the ") + what + " need " + std::to_string(bytes >> 20) + " MiB in one buffer, the driver allows " +
-                                                std::to_string(limit >> 20), "bake with fewer terms or split the scene");
-}
-
 }  // namespace
 
 GpuScene::GpuScene(const BakedScene& baked)

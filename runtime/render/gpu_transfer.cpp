@@ -13,15 +13,6 @@ namespace {
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-void requireStorage(std::size_t bytes, const char* what) {
-  GLint64 limit = 0;
-  glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &limit);
-  if (bytes > static_cast<std::size_t>(limit))
-    throw Error(ExitCode::failed, "OpenGL",
-                std::string("the ") + what + " need " + std::to_string(bytes >> 20) + " MiB in one buffer, the driver allows " + std::to_string(limit >> 20),
-                "bake with fewer terms or split the scene");
-}
-
 int vectorsOf(int terms) { return (terms + 3) / 4; }
 
 /// Where each texel of a cell, border included, reads from: one map of the SSDF, or the levels' maps on top of each other.
@@ -117,6 +108,14 @@ bool isOpen(const Transfer& transfer) {
 }
 
 }  // namespace
+
+void requireStorage(std::size_t bytes, const char* what) {
+  GLint64 limit = 0;
+  glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &limit);
+  if (bytes > static_cast<std::size_t>(limit))
+    throw Error(ExitCode::failed, "OpenGL", std::string("the ") + what + " need " + std::to_string(bytes >> 20) + " MiB in one buffer, the driver allows " +
+                                                std::to_string(limit >> 20), "bake with fewer terms or split the scene");
+}
 
 GpuTransfer::GpuTransfer(const BakedScene& baked) {
   const Transfer& transfer = baked.transfer;

@@ -12,6 +12,9 @@
 
 namespace chiaro {
 
+/// Throws Error when the driver takes no storage buffer of so many bytes; `what` it is for, in the plural.
+void requireStorage(std::size_t bytes, const char* what);
+
 class GpuTransfer {
  public:
   GpuTransfer() = default;

@@ -6,10 +6,9 @@
 #include <random>
 #include <vector>
 
-namespace chiaro {
+#include "precompute/lobe_samples.h"
 
-/// Uniform in [0, 1), the same on every standard library.
-inline double uniform(std::mt19937& random) { return static_cast<double>(random()) * 0x1p-32; }
+namespace chiaro {
 
 /// A von Mises-Fisher lobe with the directions it is integrated over; they all carry the same weight.
 struct Lobe {

@@ -10,18 +10,6 @@
 namespace chiaro {
 namespace {
 
-/// Row of the PrimitiveTransfer weights of vertex `index` of the whole scene; null where there are no terms.
-const std::int16_t* weightsOf(const Transfer& transfer, std::size_t index) {
-  const auto stride = static_cast<std::size_t>(transfer.paddedTerms());
-  if (stride == 0) return nullptr;
-  for (const auto& primitive : transfer.primitives) {
-    const auto count = primitive.weights.size() / stride;
-    if (index < count) return primitive.weights.data() + index * stride;
-    index -= count;
-  }
-  return nullptr;
-}
-
 class TransferMethod : public VisibilityMethod {
  public:
   explicit TransferMethod(const Transfer& transfer) : transfer_(transfer), kind_(ssdfOfOccluders()) {}
