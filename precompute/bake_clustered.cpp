@@ -11,6 +11,7 @@
 
 #include "precompute/clustered_error.h"
 #include "precompute/compression/encode_clusters.h"
+#include "precompute/compression/product.h"
 #include "precompute/parallel.h"
 #include "precompute/ssdf/ssdf.h"
 #include "precompute/transfer_rows.h"
@@ -20,7 +21,7 @@ namespace chiaro {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-using RowMatrix = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+using RowMatrix = RowMajor<float>;
 
 double secondsSince(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
@@ -98,13 +99,12 @@ class Projection {
   RowMatrix operator()(const float* rows, std::size_t count, std::size_t stride) const {
     const Eigen::Map<const RowMatrix, 0, Eigen::OuterStride<>> from(rows, static_cast<Eigen::Index>(count), matrix_.rows(),
                                                                     Eigen::OuterStride<>(static_cast<Eigen::Index>(stride)));
-    RowMatrix result = (from.rowwise() - mean_) * matrix_;
-    return result;
+    return product(from.rowwise() - mean_, matrix_);
   }
 
  private:
   Eigen::RowVectorXf mean_;
-  Eigen::MatrixXf matrix_;
+  RowMatrix matrix_;
 };
 
 std::vector<float> coordinateScales(const Pca& pca, std::size_t sampled) {

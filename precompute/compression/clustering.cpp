@@ -7,12 +7,13 @@
 #include <numeric>
 #include <random>
 
+#include "precompute/compression/product.h"
 #include "precompute/parallel.h"
 
 namespace chiaro {
 namespace {
 
-using RowMatrix = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+using RowMatrix = RowMajor<float>;
 using Eigen::Index;
 
 constexpr std::size_t kRowBlock = 256;       // part of the result's bits, as every block size here
@@ -31,8 +32,7 @@ std::size_t blocksOf(std::size_t rows) { return (rows + kRowBlock - 1) / kRowBlo
 
 /// Squared distances of a block of rows to all centres, less the rows' own squared lengths.
 RowMatrix distances(const Coordinates& rows, std::size_t first, std::size_t count, const RowMatrix& centers, const Eigen::VectorXf& centerNorm) {
-  RowMatrix result(index(count), centers.rows());
-  result.noalias() = -2.0f * rowsOf(rows, first, count, static_cast<std::size_t>(centers.cols())) * centers.transpose();
+  RowMatrix result = -2.0f * productTransposedB(rowsOf(rows, first, count, static_cast<std::size_t>(centers.cols())), centers);
   result.rowwise() += centerNorm.transpose();
   return result;
 }
@@ -94,21 +94,10 @@ void findComponents(const RowMatrix& centered, int wanted, double leastRms, Clus
   std::mt19937 random(0);
   RowMatrix weights(centered.rows(), wide);
   for (Index i = 0; i < weights.size(); ++i) weights.data()[i] = (random() & 1u) != 0 ? 1.0f : -1.0f;
-  RowMatrix basis(centered.cols(), wide);
-  basis.noalias() = centered.transpose() * weights;
-  const auto orthonormalise = [&] {
-    const Eigen::HouseholderQR<Eigen::MatrixXf> qr(basis);
-    basis = qr.householderQ() * Eigen::MatrixXf::Identity(basis.rows(), wide);
-  };
-  orthonormalise();
-  for (int i = 0; i < kSubspaceIterations; ++i) {
-    weights.noalias() = centered * basis;
-    basis.noalias() = centered.transpose() * weights;
-    orthonormalise();
-  }
-  weights.noalias() = centered * basis;
-  const Eigen::MatrixXf gram = weights.transpose() * weights;
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(gram.cast<double>());
+  RowMatrix basis = orthonormalised(productTransposedA(centered, weights));
+  for (int i = 0; i < kSubspaceIterations; ++i) basis = orthonormalised(productTransposedA(centered, product(centered, basis)));
+  weights = product(centered, basis);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(productTransposedA(weights, weights).cast<double>());
   for (std::size_t k = 0; k < width; ++k) {
     const Index from = wide - 1 - index(k);
     if (!(eigen.eigenvalues()[from] > leastEnergy)) break;
@@ -178,7 +167,7 @@ std::vector<std::uint16_t> assignRows(const std::vector<Cluster>& clusters, cons
       own.resize(index(n), index(rows.columns));
       for (std::size_t i = 0; i < n; ++i) own.row(index(i)) = rowsOf(rows, asked[c][first + i] / candidates, 1, rows.columns);
       own.rowwise() -= centers.row(index(c));
-      weights.noalias() = own * components.transpose();
+      weights = productTransposedB(own, components);
       for (std::size_t i = 0; i < n; ++i) apart[asked[c][first + i]] -= weights.row(index(i)).squaredNorm();
     }
   });

@@ -5,12 +5,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "precompute/compression/product.h"
 #include "precompute/parallel.h"
 
 namespace chiaro {
 namespace {
 
-using RowMatrix = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+using RowMatrix = RowMajor<float>;
 
 // Block shapes are part of the result's bits: they never depend on the number of threads.
 constexpr std::size_t kRowBlock = 128;
@@ -54,7 +55,7 @@ class Weighted {
       const auto first = block * kRowBlock, count = std::min(kRowBlock, matrix_.rows - first);
       RowMatrix part(static_cast<Eigen::Index>(count), static_cast<Eigen::Index>(matrix_.columns));
       load(first, count, 0, matrix_.columns, part);
-      result.middleRows(static_cast<Eigen::Index>(first), static_cast<Eigen::Index>(count)).noalias() = part * right;
+      result.middleRows(static_cast<Eigen::Index>(first), static_cast<Eigen::Index>(count)) = product(part, right);
       steps.add();
     });
     return result;
@@ -66,13 +67,12 @@ class Weighted {
     parallelBlocks(threads_, blocks(matrix_.columns, kColumnBlock), [&](std::size_t block) {
       const auto first = block * kColumnBlock, count = std::min(kColumnBlock, matrix_.columns - first);
       Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(count), left.cols());
-      RowMatrix part, product;
+      RowMatrix part;
       for (std::size_t row = 0; row < matrix_.rows; row += kRowBlock) {
         const auto rows = std::min(kRowBlock, matrix_.rows - row);
         part.resize(static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(count));
         load(row, rows, first, count, part);
-        product.noalias() = part.transpose() * left.middleRows(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(rows));
-        sum += product.cast<double>();
+        sum += productTransposedA(part, left.middleRows(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(rows))).cast<double>();
       }
       result.middleRows(static_cast<Eigen::Index>(first), static_cast<Eigen::Index>(count)) = sum.cast<float>();
       steps.add();
@@ -112,12 +112,6 @@ class Weighted {
   Eigen::VectorXf root;
 };
 
-RowMatrix orthonormalised(const RowMatrix& block) {
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(block.cast<double>());
-  const Eigen::MatrixXd q = qr.householderQ() * Eigen::MatrixXd::Identity(block.rows(), block.cols());
-  return q.cast<float>();
-}
-
 }  // namespace
 
 void FixedPointMatrix::setRow(std::size_t i, const float* source) {
@@ -154,9 +148,9 @@ Pca computePca(const FixedPointMatrix& matrix, const std::vector<float>& columnW
   const RowMatrix coordinates = a.times(basis, steps);
   Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(width, width);
   for (Eigen::Index row = 0; row < coordinates.rows(); row += static_cast<Eigen::Index>(kRowBlock)) {
-    const Eigen::MatrixXd part =
+    const RowMajor<double> part =
         coordinates.middleRows(row, std::min(static_cast<Eigen::Index>(kRowBlock), coordinates.rows() - row)).cast<double>();
-    gram.noalias() += part.transpose() * part;
+    gram += productTransposedA(part, part);
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(gram);
   const auto strongest = [&](int k) { return width - 1 - k; };  // the solver sorts upwards
@@ -164,8 +158,8 @@ Pca computePca(const FixedPointMatrix& matrix, const std::vector<float>& columnW
          eigen.eigenvalues()[strongest(result.terms)] > leastEnergy)
     ++result.terms;
 
-  Eigen::MatrixXd rotation(width, result.terms);
-  const Eigen::MatrixXd wide = basis.cast<double>();
+  RowMajor<double> rotation(width, result.terms);
+  const RowMajor<double> wide = basis.cast<double>();
   for (int k = 0; k < result.terms; ++k) {
     rotation.col(k) = eigen.eigenvectors().col(strongest(k));
     // An eigenvector's sign is anyone's choice; ours: its largest entry is positive.
@@ -175,13 +169,13 @@ Pca computePca(const FixedPointMatrix& matrix, const std::vector<float>& columnW
     if (function[largest] < 0.0) rotation.col(k) = -rotation.col(k);
     result.energy.push_back(eigen.eigenvalues()[strongest(k)]);
   }
-  const Eigen::MatrixXd functions = wide * rotation;
+  const RowMajor<double> functions = product(wide, rotation);
   result.functions.resize(static_cast<std::size_t>(result.terms) * matrix.columns);
   for (int k = 0; k < result.terms; ++k)
     for (std::size_t j = 0; j < matrix.columns; ++j)
       result.functions[static_cast<std::size_t>(k) * matrix.columns + j] =
           static_cast<float>(functions(static_cast<Eigen::Index>(j), k) / static_cast<double>(a.root[static_cast<Eigen::Index>(j)]));
-  const RowMatrix weights = (coordinates.cast<double>() * rotation).cast<float>();
+  const RowMatrix weights = product(RowMajor<double>(coordinates.cast<double>()), rotation).cast<float>();
   result.weights.assign(weights.data(), weights.data() + weights.size());
   return result;
 }
