@@ -48,6 +48,8 @@ void requireValid(const BakeSettings& settings) {
   if (settings.samplingResolution > 1024 || times < 1 || (times & (times - 1)) != 0 || times * settings.resolution != settings.samplingResolution)
     throw usageError("sample resolution", "is not the resolution times a power of two, 1024 at most", "use 64, 128 or 256 with 64");
   if (settings.weightBits != 8 && settings.weightBits != 16) throw usageError("weight bits", "are neither 8 nor 16", "use 8");
+  if (settings.wideTerms < 0 || settings.wideTerms > 256) throw usageError("wide terms", "must lie between 0 and 256", "use 1");
+  if (!std::isfinite(settings.bytesPerVertex)) throw usageError("bytes a vertex", "are not a number", "use 104");
   const int bits = settings.functionBits;
   if (bits != 0 && bits != 4 && bits != 8 && bits != 16) throw usageError("function bits", "are none of 0, 4, 8 and 16", "use 0");
 }
@@ -144,6 +146,8 @@ TransferFacts factsOf(const BakeSettings& settings, const BakeReport& report) {
     facts["settings.functions"] = settings.functions;
     facts["settings.weight_bits"] = settings.weightBits;
     facts["settings.function_bits"] = settings.functionBits;
+    facts["settings.wide_terms"] = settings.wideTerms;
+    facts["settings.bytes_per_vertex"] = settings.bytesPerVertex;
   }
   for (const auto& [name, value] : report.error) facts["error." + name] = value;
   return facts;

@@ -30,6 +30,10 @@ struct BakeSettings {
   int functions = 0;                ///< clustered forms: that all clusters share, 1..1024; 0: by the number of vertices
   int weightBits = 8;               ///< clustered forms: 8 or 16
   int functionBits = 0;             ///< clustered forms: 16, 8, 4; 0: 8 or 4 by what each is worth
+  int wideTerms = 1;                ///< clustered forms: a cluster's terms with weightBits and 8-bit components; 4 bits each behind them
+  /// clustered forms: bytes a vertex, all counted, that terms are dropped to fit; 0: 104, yet never less than 40 for the terms;
+  /// negative: no limit
+  double bytesPerVertex = 0.0;
   int directionCount = 32;          ///< fixed broad lobes per vertex, a multiple of 4, 8..64
   float directionSharpness = 32.0f;
   float creaseAngle = 1.0471976f;   ///< radians; sharper edges are split where the file has no normals

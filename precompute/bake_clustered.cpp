@@ -31,7 +31,7 @@ const std::vector<VisibilityLevel> kLevels{{3.0f, 12}, {10.5f, 20}, {36.75f, 28}
 constexpr float kJointClamp = 0.265f;
 /// What the share of a lobe weighs in the joint error beside a radian of distance: the sharpest level holds the most detail and, unweighted,
 /// would be the worst kept.
-float levelWeight(const VisibilityLevel& level) { return level == kLevels.back() ? 0.35f : 0.2f; }
+float levelWeight(const VisibilityLevel& level) { return level == kLevels.back() ? 0.25f : 0.15f; }
 constexpr float kFractionWeight = 0.3f;
 
 constexpr std::size_t kMostSampled = 8192;     // rows the shared functions are made from
@@ -120,6 +120,20 @@ int automatic(int wanted, std::size_t vertices, std::size_t verticesEach, int le
   return static_cast<int>(std::clamp(vertices / verticesEach, static_cast<std::size_t>(least), static_cast<std::size_t>(most)));
 }
 
+/// The paper's own: 48 weights of 16 bits, and its basis on some ten thousand vertices (Wang et al. 2009, section 6).
+constexpr double kBytesPerVertex = 104.0;
+constexpr double kLeastTermBytes = 40.0;  // where few vertices share the functions
+
+ClusterEncoding encodingOf(const BakeSettings& settings) {
+  const bool automatically = settings.bytesPerVertex == 0.0;
+  return {.weightBits = settings.weightBits,
+          .functionBits = settings.functionBits,
+          .wideTerms = settings.wideTerms,
+          .bytesPerVertex = automatically ? kBytesPerVertex : std::max(settings.bytesPerVertex, 0.0),
+          .leastTermBytes = automatically ? kLeastTermBytes : 0.0,
+          .threads = settings.threads};
+}
+
 }  // namespace
 
 void bakeClustered(const RayScene& rays, const std::vector<Viewpoint>& viewpoints, const BakeSettings& settings, BakedScene& baked,
@@ -168,7 +182,7 @@ void bakeClustered(const RayScene& rays, const std::vector<Viewpoint>& viewpoint
 
   auto compressionStart = Clock::now();
   const auto weight = columnWeights(rows, joint);
-  const int functions = automatic(settings.functions, count, 130, 32, 384);
+  const int functions = automatic(settings.functions, count, 160, 32, 320);
   const auto pca = computePca(sampled, weight, {.terms = functions, .iterations = 2, .seed = settings.seed, .threads = settings.threads},
                               stage("shared functions"));
   CoordinateStore coordinates(count, coordinateScales(pca, sample.size()));
@@ -194,13 +208,12 @@ void bakeClustered(const RayScene& rays, const std::vector<Viewpoint>& viewpoint
   compressionStart = Clock::now();
   std::vector<std::size_t> primitiveVertices;
   for (const auto& p : baked.scene.primitives) primitiveVertices.push_back(p.positions.size());
-  const ClusterSettings clusterSettings{.clusters = automatic(settings.clusters, count, 200, 1, 512),
+  const ClusterSettings clusterSettings{.clusters = automatic(settings.clusters, count, 80, 1, 1024),
                                         .terms = settings.terms,
                                         .seed = settings.seed,
                                         .threads = settings.threads};
   const auto clusters = clusterRows(coordinates.read(chosen(count, kMostTraining, settings.seed + 1)), clusterSettings, stage("clusters"));
-  encodeClusters(pca, clusters, coordinates, primitiveVertices, {.weightBits = settings.weightBits, .functionBits = settings.functionBits, .threads = settings.threads},
-                 transfer);
+  encodeClusters(pca, clusters, coordinates, primitiveVertices, encodingOf(settings), transfer);
   report.seconds.compression += secondsSince(compressionStart);
   if (joint) decodeFractions(transfer);
 

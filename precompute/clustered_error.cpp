@@ -4,10 +4,10 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <numbers>
 #include <random>
 
+#include "assets/transfer/row_decoder.h"
 #include "precompute/lobe_samples.h"
 #include "precompute/parallel.h"
 #include "precompute/transfer_lookup.h"
@@ -31,22 +31,6 @@ double tracedFraction(const RayScene& rays, glm::vec3 origin, glm::vec3 n, glm::
   return static_cast<double>(seen) / kRays;
 }
 
-/// Maps of clusters, made when first asked for.
-class ClusterMaps {
- public:
-  explicit ClusterMaps(const Transfer& transfer) : transfer_(transfer), functions_(transfer.clustered.functions.unpack(transfer.columns())) {}
-  const std::vector<float>& operator[](std::uint16_t cluster) {
-    auto& maps = maps_[cluster];
-    if (maps.empty()) maps = clusterMaps({transfer_.clustered.clusters[cluster]}, functions_, transfer_.mean, 0, transfer_.mean.size());
-    return maps;
-  }
-
- private:
-  const Transfer& transfer_;
-  std::vector<float> functions_;
-  std::map<std::uint16_t, std::vector<float>> maps_;
-};
-
 struct Sums {
   double squared = 0.0, wrongSign = 0.0, solidAngle = 0.0;
   std::vector<double> levelSquared, levelCount;
@@ -64,27 +48,9 @@ std::vector<std::pair<std::string, double>> measureClusteredError(const RayScene
   for (std::size_t i = 0; i < count; ++i)
     vertices.push_back(static_cast<std::uint32_t>(uniform(random) * static_cast<double>(viewpoints.size())));
 
-  ClusterMaps maps(transfer);
+  const RowDecoder decoder(transfer);
   const auto columns = transfer.columns();
-  std::vector<float> stored(count * columns);
-  {
-    std::vector<std::pair<std::size_t, std::size_t>> place;  // of each vertex: primitive and index
-    std::vector<std::vector<std::size_t>> first;
-    for (const auto& p : transfer.primitives) first.push_back(p.clustered.firstWeights(transfer.clustered.clusters));
-    for (std::size_t i = 0; i < count; ++i) {
-      std::size_t p = 0, v = vertices[i];
-      while (v >= transfer.primitives[p].clustered.cluster.size()) v -= transfer.primitives[p++].clustered.cluster.size();
-      const auto& own = transfer.primitives[p].clustered;
-      const auto& map = maps[own.cluster[v]];
-      const auto& scale = transfer.clustered.clusters[own.cluster[v]].weightScale;
-      float* row = stored.data() + i * columns;
-      std::copy_n(map.data(), columns, row);
-      for (std::size_t k = 0; k < scale.size(); ++k) {
-        const float w = scale[k] * static_cast<float>(own.weights[first[p][v] + k]);
-        for (std::size_t j = 0; j < columns; ++j) row[j] += w * map[(1 + k) * columns + j];
-      }
-    }
-  }
+  std::vector<float> stored(count * columns, 0.0f);
   std::vector<float> exact(count * rows.size());
   constexpr std::size_t kBlock = 16;
   const auto& levels = rows.layout().levels;
@@ -94,6 +60,7 @@ std::vector<std::pair<std::string, double>> measureClusteredError(const RayScene
     const auto begin = block * kBlock, n = std::min(kBlock, count - begin);
     rows(std::span<const std::uint32_t>(vertices).subspan(begin, n), exact.data() + begin * rows.size(), rows.size());
     for (std::size_t i = begin; i < begin + n; ++i) {
+      decoder.add(vertices[i], 1.0f, stored.data() + i * columns);
       auto& sum = parts[i];
       const auto& viewpoint = viewpoints[vertices[i]];
       const float *got = stored.data() + i * columns, *want = exact.data() + i * rows.size();

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "assets/transfer/block_codec.h"
+
 namespace chiaro {
 namespace {
 
@@ -100,6 +102,16 @@ std::vector<std::size_t> ClusteredVertices::firstWeights(const std::vector<Trans
   std::vector<std::size_t> first(cluster.size() + 1, 0);
   for (std::size_t i = 0; i < cluster.size(); ++i) first[i + 1] = first[i] + static_cast<std::size_t>(clusters[cluster[i]].terms);
   return first;
+}
+
+std::size_t storedComponentBytes(const ClusteredTransfer& clustered, int terms) {
+  const auto wide = static_cast<std::size_t>(std::min(terms, clustered.wideTerms)), functions = clustered.functions.count();
+  return wide * functions + (static_cast<std::size_t>(terms) - wide) * blockBytes4(functions);
+}
+
+std::size_t storedWeightBytes(const ClusteredTransfer& clustered, int terms) {
+  const auto wide = static_cast<std::size_t>(std::min(terms, clustered.wideTerms));
+  return wide * static_cast<std::size_t>(clustered.weightBits / 8) + (static_cast<std::size_t>(terms) - wide + 1) / 2;
 }
 
 std::vector<float> clusterMaps(const std::vector<TransferCluster>& clusters, const std::vector<float>& functions, const std::vector<float>& mean,

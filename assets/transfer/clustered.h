@@ -44,8 +44,8 @@ struct PackedFunctions {
 struct TransferCluster {
   int terms = 0;
   float meanScale = 0.0f;                 ///< m_d = meanScale * q / 32767
-  std::vector<std::int16_t> mean;         ///< F
-  std::vector<std::int8_t> components;    ///< terms by F: C_kd = q / 127
+  std::vector<std::int16_t> mean;         ///< F, as blocks of 8 bits hold them (block_codec.h)
+  std::vector<std::int8_t> components;    ///< terms by F: C_kd = q / 127; from term wideTerms on as blocks of 4 bits hold them
   std::vector<float> weightScale;         ///< terms: w_k = weightScale * q, q the vertex's stored integer
 };
 
@@ -53,7 +53,9 @@ struct ClusteredTransfer {
   std::vector<VisibilityLevel> levels;
   PackedFunctions functions;
   std::vector<TransferCluster> clusters;
-  int weightBits = 8;                     ///< 8 or 16: what a stored weight may take
+  int weightBits = 8;                     ///< 8 or 16: what a stored weight of the first wideTerms terms may take
+  /// The terms of a cluster behind these, the weak ones, store 4 bits for each weight and each component.
+  int wideTerms = 4096;
   bool empty() const { return clusters.empty(); }
 };
 
@@ -64,6 +66,10 @@ struct ClusteredVertices {
   /// #vertices + 1 places in `weights`.
   std::vector<std::size_t> firstWeights(const std::vector<TransferCluster>& clusters) const;
 };
+
+/// Bytes that a cluster's components, and a vertex's weights, take where they are stored.
+std::size_t storedComponentBytes(const ClusteredTransfer& clustered, int terms);
+std::size_t storedWeightBytes(const ClusteredTransfer& clustered, int terms);
 
 /// Maps of clusters ready for use, for columns [begin, end): (1 + terms) by end - begin for each cluster, one behind the other, the mean
 /// first. A vertex's row is mean + sum_k w_k map_k. functions: unpacked, #functions by mean.size().

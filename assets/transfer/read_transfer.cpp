@@ -11,6 +11,7 @@
 #include "assets/file.h"
 #include "assets/scene/glb.h"
 #include "assets/scene/gltf_scene.h"
+#include "assets/transfer/block_codec.h"
 #include "assets/transfer/transfer.h"
 #include "assets/transfer/transfer_format.h"
 
@@ -280,43 +281,46 @@ class BakedReader {
     const auto functions = out.functions.count();
     out.weightBits = static_cast<int>(integer(c, "weightBits", 8, 16, owner));
     if (out.weightBits != 8 && out.weightBits != 16) fail("\"weightBits\" is neither 8 nor 16");
+    out.wideTerms = static_cast<int>(integer(c, "wideTerms", 0, kMostTransferTerms, owner));
     const auto terms = elements<std::uint16_t>(viewIndex(c, "clusterTerms", owner), count, "the list of cluster terms");
-    std::size_t all = 0;
+    std::size_t all = 0, componentBytes = 0;
     for (const auto k : terms) {
       if (k > t.terms) fail("a cluster has more terms than \"terms\"");
       all += k;
+      componentBytes += storedComponentBytes(out, k);
     }
     std::vector<float> meanScales(count, 0.0f), weightScales;
-    std::vector<std::int16_t> means;
-    std::vector<std::int8_t> components;
+    std::vector<std::uint8_t> means, components;
     if (functions > 0) {
       meanScales = elements<float>(viewIndex(c, "clusterMeanScales", owner), count, "the list of mean scales");
       requireFinite(meanScales, "the list of mean scales");
-      means = elements<std::int16_t>(viewIndex(c, "clusterMeans", owner), count * functions, "the list of cluster means");
+      means = elements<std::uint8_t>(viewIndex(c, "clusterMeans", owner), count * blockBytes8(functions), "the list of cluster means");
     } else if (all > 0) {
       fail("has cluster terms without functions");
     }
     if (all > 0) {
       weightScales = elements<float>(viewIndex(c, "weightScales", owner), all, "the list of weight scales");
       requireFinite(weightScales, "the list of weight scales");
-      components = elements<std::int8_t>(viewIndex(c, "components", owner), all * functions, "the list of components");
+      components = elements<std::uint8_t>(viewIndex(c, "components", owner), componentBytes, "the list of components");
     }
     for (const float s : meanScales)
       if (!(s >= 0.0f)) fail("a mean scale is negative");
     for (const float s : weightScales)
       if (!(s > 0.0f)) fail("a weight scale is not positive");
-    std::size_t term = 0;
-    const auto part = [](const auto& values, std::size_t first, std::size_t size) {
-      const auto begin = values.begin() + static_cast<std::ptrdiff_t>(first);
-      return std::vector(begin, begin + static_cast<std::ptrdiff_t>(size));
-    };
-    for (std::size_t i = 0; i < count; ++i) {
-      out.clusters.push_back({.terms = terms[i],
-                              .meanScale = meanScales[i],
-                              .mean = part(means, i * functions, functions),
-                              .components = part(components, term * functions, terms[i] * functions),
-                              .weightScale = part(weightScales, term, terms[i])});
-      term += terms[i];
+    const std::uint8_t* component = components.data();
+    const float* scale = weightScales.data();
+    for (std::size_t i = 0; i < count; ++i, scale += terms[i - 1]) {
+      TransferCluster cluster{.terms = terms[i], .meanScale = meanScales[i], .mean = std::vector<std::int16_t>(functions), .components = {},
+                              .weightScale = {scale, scale + terms[i]}};
+      if (!unpackBlocks8(means.data() + i * blockBytes8(functions), functions, cluster.mean.data())) fail("a cluster's mean is out of range");
+      cluster.components.resize(terms[i] * functions);
+      for (int k = 0; k < cluster.terms; ++k) {
+        std::int8_t* to = cluster.components.data() + static_cast<std::size_t>(k) * functions;
+        if (k < out.wideTerms) std::memcpy(to, component, functions);
+        else if (!unpackBlocks4(component, functions, to)) fail("a component is out of range");
+        component += k < out.wideTerms ? functions : blockBytes4(functions);
+      }
+      out.clusters.push_back(std::move(cluster));
     }
   }
 
@@ -329,17 +333,28 @@ class BakedReader {
     out.cluster = elements<std::uint16_t>(viewIndex(entry, "clusters", label), count, "the list of clusters of " + label);
     for (const auto cluster : out.cluster)
       if (cluster >= c.clusters.size()) fail(label + " names cluster " + std::to_string(cluster) + " of " + std::to_string(c.clusters.size()));
-    const auto weights = out.firstWeights(c.clusters).back();
-    if (weights == 0) return out;
-    const std::string what = "the list of weights of " + label;
-    if (c.weightBits == 16) {
-      out.weights = elements<std::int16_t>(viewIndex(entry, "weights", label), weights, what);
-    } else {
-      const auto bytes = elements<std::int8_t>(viewIndex(entry, "weights", label), weights, what);
-      out.weights.assign(bytes.begin(), bytes.end());
+    std::size_t weights = 0, size = 0;
+    for (const auto cluster : out.cluster) {
+      weights += static_cast<std::size_t>(c.clusters[cluster].terms);
+      size += storedWeightBytes(c, c.clusters[cluster].terms);
     }
-    for (const auto w : out.weights)
-      if (w < (c.weightBits == 8 ? -127 : -32767)) fail(label + " has a weight out of range");
+    if (weights == 0) return out;
+    const auto bytes = elements<std::uint8_t>(viewIndex(entry, "weights", label), size, "the list of weights of " + label);
+    const std::uint8_t* from = bytes.data();
+    out.weights.reserve(weights);
+    bool inRange = true;
+    for (const auto cluster : out.cluster) {
+      const int terms = c.clusters[cluster].terms, wide = std::min(terms, c.wideTerms);
+      for (int k = 0; k < wide; ++k, from += c.weightBits / 8) {
+        out.weights.push_back(c.weightBits == 8 ? static_cast<std::int8_t>(from[0]) : static_cast<std::int16_t>(from[0] | from[1] << 8));
+        inRange = inRange && out.weights.back() >= (c.weightBits == 8 ? -127 : -32767);
+      }
+      const auto narrow = static_cast<std::size_t>(terms - wide);
+      out.weights.resize(out.weights.size() + narrow);
+      inRange = unpackNibbles(from, narrow, out.weights.data() + out.weights.size() - narrow) && inRange;
+      from += (narrow + 1) / 2;
+    }
+    if (!inRange) fail(label + " has a weight out of range");
     return out;
   }
 

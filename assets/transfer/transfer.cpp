@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "assets/transfer/block_codec.h"
+
 namespace chiaro {
 
 std::size_t Transfer::levelTexels() const {
@@ -21,10 +23,14 @@ double Transfer::bytesPerVertex(std::size_t vertexCount) const {
   double bytes = size(mean) + 2.0 * static_cast<double>(eigenfunctions.size()) + size(weightScale) + size(directions);
   if (!fractionsInRow()) bytes += static_cast<double>(directionCount) * static_cast<double>(vertexCount);
   bytes += size(clustered.functions.bits) + size(clustered.functions.scale) + size(clustered.functions.data);
-  for (const auto& c : clustered.clusters) bytes += 2.0 + 4.0 + size(c.mean) + size(c.components) + size(c.weightScale);
+  for (const auto& c : clustered.clusters)
+    bytes += 2.0 + 4.0 + static_cast<double>(blockBytes8(c.mean.size()) + storedComponentBytes(clustered, c.terms)) + size(c.weightScale);
   bytes += 2.0 * paddedTerms() * static_cast<double>(vertexCount);
+  std::vector<std::size_t> members(clustered.clusters.size(), 0);
   for (const auto& p : primitives)
-    bytes += size(p.clustered.cluster) + static_cast<double>(p.clustered.weights.size()) * clustered.weightBits / 8.0;
+    for (const auto c : p.clustered.cluster) ++members[c];
+  for (std::size_t c = 0; c < members.size(); ++c)
+    bytes += static_cast<double>(members[c]) * (2.0 + static_cast<double>(storedWeightBytes(clustered, clustered.clusters[c].terms)));
   return bytes / static_cast<double>(vertexCount);
 }
 

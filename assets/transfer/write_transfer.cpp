@@ -6,6 +6,7 @@
 
 #include "assets/error.h"
 #include "assets/file.h"
+#include "assets/transfer/block_codec.h"
 #include "assets/transfer/gltf_writer.h"
 #include "assets/transfer/transfer.h"
 #include "assets/transfer/transfer_format.h"
@@ -82,6 +83,7 @@ class FitCheck {
     for (const float v : t.mean) require(std::isfinite(v), "the mean is not finite");
     require(t.eigenfunctions.empty() && t.weightScale.empty(), "there are global components beside clusters");
     require(c.weightBits == 8 || c.weightBits == 16, "weights are neither 8 nor 16 bits");
+    require(c.wideTerms >= 0 && c.wideTerms <= kMostTransferTerms, "the number of wide terms is out of range");
     require(c.clusters.size() <= kMostTransferClusters && c.functions.count() <= kMostTransferFunctions, "there are too many clusters or functions");
     std::size_t bytes = 0;
     require(c.functions.scale.size() == c.functions.count(), "the function scales have the wrong size");
@@ -100,7 +102,20 @@ class FitCheck {
               "a cluster has the wrong size");
       require(std::isfinite(cluster.meanScale) && cluster.meanScale >= 0.0f, "a cluster's mean is not finite");
       for (const float v : cluster.weightScale) require(v > 0.0f && std::isfinite(v), "a weight scale is not positive and finite");
+      requireInBlocks(cluster);
     }
+  }
+
+  /// What is packed must come back as it is.
+  void requireInBlocks(TransferCluster cluster) const {
+    const auto mean = cluster.mean;
+    const auto components = cluster.components;
+    const auto functions = mean.size();
+    roundToBlocks(cluster.mean.data(), functions, 127);
+    require(cluster.mean == mean, "a cluster's mean is not what its blocks hold");
+    for (int k = transfer_.clustered.wideTerms; k < cluster.terms; ++k)
+      roundToBlocks(cluster.components.data() + static_cast<std::size_t>(k) * functions, functions, 7);
+    require(cluster.components == components, "a cluster's components are not what their blocks hold");
   }
 
   void checkClusteredVertices(const ClusteredVertices& v, std::size_t count, const std::string& label) const {
@@ -109,7 +124,10 @@ class FitCheck {
     for (const auto cluster : v.cluster) require(cluster < c.clusters.size(), label + " names a cluster that does not exist");
     require(v.weights.size() == v.firstWeights(c.clusters).back(), label + " has the wrong number of weights");
     const int most = c.weightBits == 8 ? 127 : 32767;
-    for (const auto w : v.weights) require(w >= -most && w <= most, label + " has a weight out of range");
+    std::size_t w = 0;
+    for (const auto cluster : v.cluster)
+      for (int k = 0; k < c.clusters[cluster].terms; ++k, ++w)
+        require(std::abs(static_cast<int>(v.weights[w])) <= (k < c.wideTerms ? most : 7), label + " has a weight out of range");
   }
 
   void checkPrimitive(std::size_t index) const {
@@ -187,10 +205,20 @@ void addVertexTransfer(const Transfer& transfer, const PrimitiveTransfer& values
   if (!transfer.fractionsInRow()) add("_VISIBILITY_", values.visibility, static_cast<std::size_t>(transfer.directionCount), kUnsignedByte);
 }
 
-/// Weights as they are stored: `bits` each.
-int addWeights(const std::vector<std::int16_t>& weights, int bits, const std::string& name, GltfWriter& writer) {
-  if (bits == 16) return writer.addArray(weights, name);
-  return writer.addArray(std::vector<std::int8_t>(weights.begin(), weights.end()), name);
+/// Weights as they are stored, vertex by vertex.
+std::vector<std::uint8_t> packedWeights(const ClusteredTransfer& c, const ClusteredVertices& vertices) {
+  std::vector<std::uint8_t> bytes;
+  const std::int16_t* w = vertices.weights.data();
+  for (const auto cluster : vertices.cluster) {
+    const int terms = c.clusters[cluster].terms, wide = std::min(terms, c.wideTerms);
+    for (int k = 0; k < wide; ++k) {
+      bytes.push_back(static_cast<std::uint8_t>(w[k] & 255));
+      if (c.weightBits == 16) bytes.push_back(static_cast<std::uint8_t>(w[k] >> 8 & 255));
+    }
+    packNibbles(w + wide, static_cast<std::size_t>(terms - wide), bytes);
+    w += terms;
+  }
+  return bytes;
 }
 
 Json clusteredOf(const BakedScene& baked, const std::vector<std::size_t>& order, GltfWriter& writer) {
@@ -206,13 +234,17 @@ Json clusteredOf(const BakedScene& baked, const std::vector<std::size_t>& order,
   }
   std::vector<std::uint16_t> terms;
   std::vector<float> meanScales, weightScales;
-  std::vector<std::int16_t> means;
-  std::vector<std::int8_t> components;
+  std::vector<std::uint8_t> means, components;
   for (const auto& cluster : c.clusters) {
     terms.push_back(static_cast<std::uint16_t>(cluster.terms));
     meanScales.push_back(cluster.meanScale);
-    means.insert(means.end(), cluster.mean.begin(), cluster.mean.end());
-    components.insert(components.end(), cluster.components.begin(), cluster.components.end());
+    packBlocks8(cluster.mean.data(), cluster.mean.size(), means);
+    const auto functions = cluster.mean.size();
+    for (int k = 0; k < cluster.terms; ++k) {
+      const std::int8_t* component = cluster.components.data() + static_cast<std::size_t>(k) * functions;
+      if (k < c.wideTerms) components.insert(components.end(), component, component + functions);
+      else packBlocks4(component, functions, components);
+    }
     weightScales.insert(weightScales.end(), cluster.weightScale.begin(), cluster.weightScale.end());
   }
   out["clusterCount"] = c.clusters.size();
@@ -226,12 +258,13 @@ Json clusteredOf(const BakedScene& baked, const std::vector<std::size_t>& order,
     out["components"] = writer.addArray(components, "components");
   }
   out["weightBits"] = c.weightBits;
+  out["wideTerms"] = c.wideTerms;
   out["primitives"] = Json::array();
   for (const auto p : order) {
     const auto& vertices = baked.transfer.primitives[p].clustered;
     const std::string of = " of primitive " + std::to_string(out["primitives"].size());
     Json primitive = {{"clusters", writer.addArray(vertices.cluster, "clusters" + of)}};
-    if (!vertices.weights.empty()) primitive["weights"] = addWeights(vertices.weights, c.weightBits, "weights" + of, writer);
+    if (!vertices.weights.empty()) primitive["weights"] = writer.addArray(packedWeights(c, vertices), "weights" + of);
     out["primitives"].push_back(primitive);
   }
   return out;

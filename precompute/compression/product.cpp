@@ -4,21 +4,31 @@
 
 #include <Eigen/Cholesky>
 #include <cmath>
+#include <mutex>
 
-// Not in every vendor's header.
-extern "C" void openblas_set_num_threads(int);
+// Not in every version's header.
+extern "C" {
+void openblas_set_num_threads(int);
+int openblas_get_parallel();  // 0: built for one thread, and then not safe to call from several
+}
 
 namespace chiaro {
 namespace {
 
 int dimension(Eigen::Index size) { return static_cast<int>(size); }
 
-/// Blocks run on threads of our own: more inside would only get in each other's way.
-void oneThread() {
-  [[maybe_unused]] static const bool done = [] {
+/// Whether calls may overlap. Blocks run on threads of our own: more inside a call would only get in each other's way.
+bool isConcurrent() {
+  static const bool concurrent = [] {
     openblas_set_num_threads(1);
-    return true;
+    return openblas_get_parallel() != 0;
   }();
+  return concurrent;
+}
+
+std::unique_lock<std::mutex> callLock() {
+  static std::mutex mutex;
+  return isConcurrent() ? std::unique_lock<std::mutex>() : std::unique_lock(mutex);
 }
 
 void multiply(CBLAS_TRANSPOSE ta, CBLAS_TRANSPOSE tb, const RowMajorRef<float>& a, const RowMajorRef<float>& b, Eigen::Index inner, RowMajor<float>& c) {
@@ -33,12 +43,12 @@ void multiply(CBLAS_TRANSPOSE ta, CBLAS_TRANSPOSE tb, const RowMajorRef<double>&
 
 template <typename Scalar>
 RowMajor<Scalar> multiplied(CBLAS_TRANSPOSE ta, CBLAS_TRANSPOSE tb, const RowMajorRef<Scalar>& a, const RowMajorRef<Scalar>& b) {
-  oneThread();
   const bool turnA = ta == CblasTrans, turnB = tb == CblasTrans;
   const auto inner = turnA ? a.rows() : a.cols();
   RowMajor<Scalar> c(turnA ? a.cols() : a.rows(), turnB ? b.rows() : b.cols());
   if (c.size() == 0) return c;
   if (inner == 0) return c.setZero();
+  const auto lock = callLock();
   multiply(ta, tb, a, b, inner, c);
   return c;
 }

@@ -74,6 +74,8 @@ std::string bakeJson(const BakeRun& run, const BakeReport& report) {
         {"functions", run.settings.functions},
         {"weight_bits", run.settings.weightBits},
         {"function_bits", run.settings.functionBits},
+        {"wide_terms", run.settings.wideTerms},
+        {"bytes_per_vertex", run.settings.bytesPerVertex},
         {"directions", run.settings.directionCount},
         {"direction_sharpness", run.settings.directionSharpness},
         {"crease_angle_deg", static_cast<double>(run.settings.creaseAngle) * 180.0 / std::numbers::pi},

@@ -60,6 +60,8 @@ void declare(CLI::App& app, Options& options) {
   shown(app.add_option("--clusters", settings.clusters, "Clusters, 0 is by the number of vertices"), "N");
   shown(app.add_option("--functions", settings.functions, "Functions that clusters share, 0 is by the number of vertices"), "N");
   shown(app.add_option("--weight-bits", settings.weightBits, "Bits of a weight, 8 or 16"), "N");
+  shown(app.add_option("--wide-terms", settings.wideTerms, "Terms of a cluster kept in full; the weaker ones take 4 bits a number"), "N");
+  shown(app.add_option("--bytes", settings.bytesPerVertex, "Bytes a vertex, all counted; weak terms are dropped to fit; 0: 104, but 40 for terms at least; below 0: no limit"), "N");
   shown(app.add_option("--function-bits", settings.functionBits, "Bits of a function's values: 16, 8, 4, or 0 for 8 and 4 by what each is worth"), "N");
   shown(app.add_option("--resolution", settings.resolution, "Texels a side of the octahedral sphere, 16 to 256, a multiple of 4"), "N");
   shown(app.add_option("--sample-resolution", settings.samplingResolution,

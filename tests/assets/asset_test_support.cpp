@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <fstream>
 
+#include "assets/transfer/block_codec.h"
 #include "assets/image/image.h"
 
 namespace chiaro::test {
@@ -117,7 +118,7 @@ Transfer anyTransfer(std::mt19937& random, const Scene& scene, int resolution, i
 
 /// What is stored of a row, in place of the global form.
 void makeClustered(std::mt19937& random, BakedScene& baked, const std::vector<VisibilityLevel>& levels, int functions,
-                   const std::vector<int>& terms, int weightBits) {
+                   const std::vector<int>& terms, int weightBits, int wideTerms) {
   std::uniform_real_distribution<float> uniform(-1.0f, 1.0f);
   Transfer& t = baked.transfer;
   t.terms = *std::max_element(terms.begin(), terms.end());
@@ -126,6 +127,7 @@ void makeClustered(std::mt19937& random, BakedScene& baked, const std::vector<Vi
   auto& c = t.clustered;
   c.levels = levels;
   c.weightBits = weightBits;
+  c.wideTerms = wideTerms;
   t.mean.clear();
   for (std::size_t i = 0; i < t.columns(); ++i) t.mean.push_back(0.5f + 0.5f * uniform(random));
   for (int f = 0; f < functions; ++f) {
@@ -139,16 +141,19 @@ void makeClustered(std::mt19937& random, BakedScene& baked, const std::vector<Vi
     cluster.terms = k;
     cluster.meanScale = 0.1f;
     for (int f = 0; f < functions; ++f) cluster.mean.push_back(static_cast<std::int16_t>(any(32767)));
+    roundToBlocks(cluster.mean.data(), cluster.mean.size(), 127);
     for (int i = 0; i < k * functions; ++i) cluster.components.push_back(static_cast<std::int8_t>(any(127)));
-    for (int i = 0; i < k; ++i) cluster.weightScale.push_back((0.2f + 0.1f * uniform(random)) / (weightBits == 8 ? 127.0f : 32767.0f));
+    for (int i = wideTerms; i < k; ++i) roundToBlocks(cluster.components.data() + i * functions, static_cast<std::size_t>(functions), 7);
+    for (int i = 0; i < k; ++i) cluster.weightScale.push_back((0.2f + 0.1f * uniform(random)) / (i >= wideTerms ? 7.0f : weightBits == 8 ? 127.0f : 32767.0f));
   }
   for (std::size_t p = 0; p < t.primitives.size(); ++p) {
     auto& values = t.primitives[p];
     values.weights.clear();
     for (std::size_t v = 0; v < baked.scene.primitives[p].positions.size(); ++v)
       values.clustered.cluster.push_back(static_cast<std::uint16_t>(random() % terms.size()));
-    const auto count = values.clustered.firstWeights(c.clusters).back();
-    for (std::size_t i = 0; i < count; ++i) values.clustered.weights.push_back(static_cast<std::int16_t>(any(weightBits == 8 ? 127 : 32767)));
+    for (const auto cluster : values.clustered.cluster)
+      for (int k = 0; k < c.clusters[cluster].terms; ++k)
+        values.clustered.weights.push_back(static_cast<std::int16_t>(any(k >= wideTerms ? 7 : weightBits == 8 ? 127 : 32767)));
   }
   decodeFractions(t);
 }
@@ -251,17 +256,17 @@ BakedScene tinyBake() {
   return baked;
 }
 
-BakedScene clusteredBake(bool levels, int weightBits) {
+BakedScene clusteredBake(bool levels, int weightBits, int wideTerms) {
   BakedScene baked = sampleBake();
   std::mt19937 random(20240608);
-  makeClustered(random, baked, levels ? std::vector<VisibilityLevel>{{3.0f, 4}, {10.5f, 6}} : std::vector<VisibilityLevel>{}, 7, {5, 0, 2}, weightBits);
+  makeClustered(random, baked, levels ? std::vector<VisibilityLevel>{{3.0f, 4}, {10.5f, 6}} : std::vector<VisibilityLevel>{}, 7, {5, 0, 2}, weightBits, wideTerms);
   return baked;
 }
 
 BakedScene tinyClusteredBake() {
   BakedScene baked = tinyBake();
   std::mt19937 random(20240609);
-  makeClustered(random, baked, {{3.0f, 1}, {10.5f, 2}}, 3, {1, 0}, 8);
+  makeClustered(random, baked, {{3.0f, 1}, {10.5f, 2}}, 3, {1, 0}, 8, 4096);
   baked.transfer.primitives[0].clustered.cluster = {0, 1, 0};
   baked.transfer.primitives[0].clustered.weights = {127, -3};
   decodeFractions(baked.transfer);

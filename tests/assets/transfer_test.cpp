@@ -1,4 +1,6 @@
 // The baked file: what goes in comes out, and nothing that was damaged gets in.
+#include "assets/transfer/block_codec.h"
+#include "assets/transfer/row_decoder.h"
 #include "assets/transfer/transfer.h"
 
 #include <algorithm>
@@ -295,20 +297,26 @@ TEST(Transfer, BytesPerVertexCountsWhatIsStored) {
 }
 
 TEST(Transfer, BytesPerVertexOfClustersCountsWhatIsStored) {
+  const auto weightBytes = [](const Transfer& t, double five, double two) {
+    double sum = 0.0;
+    for (const auto& p : t.primitives)
+      for (const auto c : p.clustered.cluster) sum += c == 0 ? five : c == 2 ? two : 0.0;
+    return sum;
+  };
   for (const int weightBits : {8, 16}) {
-    const Transfer t = test::clusteredBake(true, weightBits).transfer;
-    double weights = 0.0;
-    for (const auto& p : t.primitives) weights += static_cast<double>(p.clustered.weights.size());
     // 124 columns: mean of floats; 3 functions of 2 bytes a value, 2 of 1, 2 of 8 blocks of 9 bytes; their bits and scales; 8 directions; three
-    // clusters with terms, scale and mean; 7 components of 7 functions with a scale each. A cluster's number a vertex, and its weights.
-    const double shared = 4 * 124 + (3 * 248 + 2 * 124 + 2 * 72) + 7 * (1 + 4) + 96 + 3 * (2 + 4 + 14) + 7 * (7 + 4);
-    EXPECT_DOUBLE_EQ(t.bytesPerVertex(31), (shared + 31 * 2 + weights * weightBits / 8) / 31);
+    // clusters with terms, scale and a block of 18 bytes of mean; 7 components with a scale each.
+    const double shared = 4 * 124 + (3 * 248 + 2 * 124 + 2 * 72) + 7 * (1 + 4) + 96 + 3 * (2 + 4 + 18) + 7 * 4;
+    // Components of 7 bytes, or a block of 9 behind the wide terms; of each vertex its cluster and its weights, two to a byte behind.
+    const Transfer wide = test::clusteredBake(true, weightBits, 4096).transfer;
+    EXPECT_DOUBLE_EQ(wide.bytesPerVertex(31), (shared + 7 * 7 + 31 * 2 + weightBytes(wide, 5 * weightBits / 8, 2 * weightBits / 8)) / 31);
+    const Transfer narrow = test::clusteredBake(true, weightBits, 2).transfer;
+    EXPECT_DOUBLE_EQ(narrow.bytesPerVertex(31),
+                     (shared + 4 * 7 + 3 * 9 + 31 * 2 + weightBytes(narrow, 2 * weightBits / 8 + 2, 2 * weightBits / 8)) / 31);
   }
   // Without levels each vertex has its fractions; 64 columns.
-  const Transfer t = test::clusteredBake(false).transfer;
-  double weights = 0.0;
-  for (const auto& p : t.primitives) weights += static_cast<double>(p.clustered.weights.size());
-  EXPECT_DOUBLE_EQ(t.bytesPerVertex(31), (256 + (3 * 128 + 2 * 64 + 2 * 36) + 35 + 96 + 60 + 77 + 31 * (2 + 8) + weights) / 31);
+  const Transfer t = test::clusteredBake(false, 8, 4096).transfer;
+  EXPECT_DOUBLE_EQ(t.bytesPerVertex(31), (256 + (3 * 128 + 2 * 64 + 2 * 36) + 35 + 96 + 72 + 77 + 31 * (2 + 8) + weightBytes(t, 5, 2)) / 31);
 }
 
 TEST(Transfer, FactsThatAreNotFiniteReadBackAsNan) {
@@ -587,6 +595,8 @@ TEST(Transfer, FaultyWritersOfClustersAreFound) {
   EXPECT_THAT(withMember("clusterCount", 3), HasSubstr("instead of"));
   EXPECT_THAT(withMember("weightBits", 12), HasSubstr("neither 8 nor 16"));
   EXPECT_THAT(withMember("weightBits", 16), HasSubstr("the list of weights of"));
+  EXPECT_THAT(withMember("wideTerms", -1), HasSubstr("\"wideTerms\""));
+  EXPECT_THAT(withMember("wideTerms", 0), HasSubstr("the list of components takes"));
   EXPECT_THAT(withMember("functions", 99), HasSubstr("\"functions\""));
   EXPECT_THAT(withMember("primitives", ordered_json::array()), HasSubstr("other primitives"));
   auto two = good.json["extensions"]["CHIARO_radiance_transfer"]["clustered"]["primitives"];
@@ -618,12 +628,29 @@ TEST(Transfer, FaultyWritersOfClustersAreFound) {
   EXPECT_THAT(withByte(clustered["clusterTerms"], 2, {1, 0}), HasSubstr("instead of"));
   EXPECT_THAT(withByte(clustered["clusterMeanScales"], 0, nan), HasSubstr("mean scales is not finite"));
   EXPECT_THAT(withByte(clustered["clusterMeanScales"], 0, negative), HasSubstr("a mean scale is negative"));
+  EXPECT_THAT(withByte(clustered["clusterMeans"], 1, {0x80}), HasSubstr("mean is out of range")) << "a block's largest";
+  EXPECT_THAT(withByte(clustered["clusterMeans"], 2, {0x80}), HasSubstr("mean is out of range"));
+  EXPECT_THAT(withByte(clustered["clusterMeans"], 2, {1, 1, 1}), HasSubstr("mean is out of range")) << "nothing reaches the largest";
+  EXPECT_THAT(withByte(clustered["clusterMeans"], 0, {0, 0}), HasSubstr("mean is out of range")) << "not nothing, in a block of nothing";
   EXPECT_THAT(withByte(clustered["weightScales"], 0, nan), HasSubstr("weight scales is not finite"));
   EXPECT_THAT(withByte(clustered["weightScales"], 0, {0, 0, 0, 0}), HasSubstr("a weight scale is not positive"));
   EXPECT_THAT(withByte(clustered["primitives"][0]["clusters"], 0, {2, 0}), HasSubstr("names cluster 2 of 2"));
   EXPECT_THAT(withByte(clustered["primitives"][0]["clusters"], 0, {1, 0}), HasSubstr("the list of weights of"));
   EXPECT_THAT(withByte(clustered["primitives"][0]["weights"], 0, {0x80}), HasSubstr("a weight out of range"));
   EXPECT_THAT(withByte(Parts(good).extension()["mean"], 0, nan), HasSubstr("the mean is not finite at element 0"));
+}
+
+TEST(Transfer, NumbersOfFourBitsThatDoNotExistAreFound) {
+  const BakedScene baked = test::clusteredBake(true, 8, 0);
+  const auto withByte = [&](auto view, std::uint8_t byte) {
+    Parts parts(bytesOf(baked));
+    parts.binary[parts.offsetOfView(view(parts.extension()["clustered"]).template get<int>())] = byte;
+    parts.sumViews();
+    return parts.error();
+  };
+  EXPECT_THAT(withByte([](auto& c) { return c["components"]; }, 128), HasSubstr("a component is out of range"));
+  EXPECT_THAT(withByte([](auto& c) { return c["primitives"][0]["weights"]; }, 0x18), HasSubstr("a weight out of range"));
+  EXPECT_THAT(withByte([](auto& c) { return c["primitives"][0]["weights"]; }, 0x81), HasSubstr("a weight out of range"));
 }
 
 TEST(Transfer, WriterRefusesClustersThatDoNotFit) {
@@ -665,6 +692,9 @@ TEST(Transfer, WriterRefusesClustersThatDoNotFit) {
   EXPECT_THAT(refuses([](B b, C) { b.transfer.primitives[1].clustered.cluster[0] = 3; }), HasSubstr("cluster that does not exist"));
   EXPECT_THAT(refuses([](B b, C) { b.transfer.primitives[0].clustered.weights.pop_back(); }), HasSubstr("number of weights"));
   EXPECT_THAT(refuses([](B b, C) { b.transfer.primitives[0].clustered.weights[0] = 128; }), HasSubstr("weight out of range"));
+  EXPECT_THAT(refuses([](B, C c) { c.wideTerms = -1; }), HasSubstr("wide terms"));
+  EXPECT_THAT(refuses([](B, C c) { c.wideTerms = 0; }), HasSubstr("what their blocks hold"));
+  EXPECT_THAT(refuses([](B, C c) { c.clusters[0].mean = {32767, 1, 2, 3, 4, 5, 6}; }), HasSubstr("what its blocks hold"));
   EXPECT_THAT(refuses([](B b, C) { b.transfer.primitives[0].weights.push_back(0); }), HasSubstr("number of weights"));
   EXPECT_THAT(refuses([](B, C c) {
                 c.functions = {};
@@ -739,6 +769,70 @@ TEST(PackedFunctions, OfSeveralKindsLieBehindOneAnother) {
   ASSERT_EQ(all.size(), 7u * 21u);
   for (std::size_t f = 0; f < 7; ++f)
     for (std::size_t i = 0; i < 21; ++i) EXPECT_LE(std::abs(all[f * 21 + i] - functions[f][i]), halfStep(functions[f], i, packed.bits[f]));
+}
+
+TEST(RowDecoder, IsTheSumOfTheClustersMaps) {
+  const Transfer t = test::clusteredBake(true).transfer;
+  const auto columns = t.columns();
+  const auto maps = clusterMaps(t.clustered.clusters, t.clustered.functions.unpack(columns), t.mean, 0, columns);
+  const RowDecoder decoder(t);
+  std::size_t vertex = 0;
+  for (const auto& p : t.primitives) {
+    const auto first = p.clustered.firstWeights(t.clustered.clusters);
+    for (std::size_t v = 0; v < p.clustered.cluster.size(); ++v, ++vertex) {
+      std::vector<float> row(columns, 1.0f);
+      decoder.add(vertex, 0.5f, row.data());
+      const auto c = p.clustered.cluster[v];
+      std::size_t map = 0;
+      for (std::size_t i = 0; i < c; ++i) map += 1 + static_cast<std::size_t>(t.clustered.clusters[i].terms);
+      for (std::size_t j = 0; j < columns; ++j) {
+        double sum = static_cast<double>(maps[map * columns + j]);
+        for (std::size_t k = 0; k < t.clustered.clusters[c].weightScale.size(); ++k)
+          sum += static_cast<double>(t.clustered.clusters[c].weightScale[k]) * p.clustered.weights[first[v] + k] *
+                 static_cast<double>(maps[(map + 1 + k) * columns + j]);
+        ASSERT_LE(std::abs(static_cast<double>(row[j]) - (1.0 + 0.5 * sum)), 1e-5) << "single precision sums of 5 by 7";
+      }
+    }
+  }
+  EXPECT_EQ(vertex, 31u);
+}
+
+TEST(Blocks, HoldTheirLargestAndComeBackAsTheyAre) {
+  std::mt19937 random(7);
+  for (const std::size_t count : {0u, 1u, 15u, 16u, 17u, 40u}) {
+    for (const int largest : {0, 1, 3, 6, 7, 8, 100, 127}) {
+      std::vector<std::int8_t> values(count);
+      for (auto& v : values) v = static_cast<std::int8_t>(largest == 0 ? 0 : static_cast<int>(random() % static_cast<unsigned>(2 * largest + 1)) - largest);
+      auto rounded = values;
+      roundToBlocks(rounded.data(), count, 7);
+      for (std::size_t i = 0; i < count; ++i) {
+        int most = 0;
+        for (std::size_t j = i / 16 * 16; j < std::min(count, i / 16 * 16 + 16); ++j) most = std::max(most, std::abs(static_cast<int>(values[j])));
+        // Half a step of the block, and half of one of the integers.
+        EXPECT_LE(std::abs(rounded[i] - values[i]), most / 14.0 + 0.5) << largest;
+        if (std::abs(static_cast<int>(values[i])) == most) {
+          EXPECT_EQ(rounded[i], values[i]);
+        }
+      }
+      std::vector<std::uint8_t> bytes;
+      packBlocks4(rounded.data(), count, bytes);
+      EXPECT_EQ(bytes.size(), blockBytes4(count));
+      std::vector<std::int8_t> back(count, 99);
+      EXPECT_TRUE(unpackBlocks4(bytes.data(), count, back.data()));
+      EXPECT_EQ(back, rounded) << largest;
+    }
+    for (const int largest : {0, 1, 63, 126, 127, 128, 1000, 32767}) {
+      std::vector<std::int16_t> values(count);
+      for (auto& v : values) v = static_cast<std::int16_t>(largest == 0 ? 0 : static_cast<int>(random() % static_cast<unsigned>(2 * largest + 1)) - largest);
+      roundToBlocks(values.data(), count, 127);
+      std::vector<std::uint8_t> bytes;
+      packBlocks8(values.data(), count, bytes);
+      EXPECT_EQ(bytes.size(), blockBytes8(count));
+      std::vector<std::int16_t> back(count, 99);
+      EXPECT_TRUE(unpackBlocks8(bytes.data(), count, back.data()));
+      EXPECT_EQ(back, values) << largest;
+    }
+  }
 }
 
 TEST(ClusterMaps, AreSumsOfFunctions) {

@@ -3,7 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <atomic>
 #include <random>
+
+#include "precompute/parallel.h"
 
 namespace chiaro {
 namespace {
@@ -33,6 +36,15 @@ TEST(Product, TakesRowsThatLieApartAndEmptyOnes) {
   EXPECT_EQ(product(a.leftCols(20), b), product(part, b));
   EXPECT_EQ(product(a.leftCols(0), b.topRows(0)), RowMajor<float>::Zero(8, 5));
   EXPECT_EQ(product(a.topRows(0).leftCols(20), b).rows(), 0);
+}
+
+// A BLAS built for one thread shares its work space between calls and, now and then, spoils a result.
+TEST(Product, CallsFromSeveralThreadsDoNotDisturbOneAnother) {
+  const auto a = randomMatrix<float>(256, 900, 7), b = randomMatrix<float>(900, 400, 8);
+  const RowMajor<float> alone = product(a, b);
+  std::atomic<int> wrong = 0;
+  parallelBlocks(5, 400, [&](std::size_t) { wrong += product(a, b) != alone; });
+  EXPECT_EQ(wrong, 0);
 }
 
 TEST(Orthonormalised, SpansTheSameSpace) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "assets/transfer/row_decoder.h"
 #include "precompute/compression/encode.h"
 #include "precompute/report/visibility/map_methods.h"
 #include "precompute/transfer_lookup.h"
@@ -37,22 +38,19 @@ class TransferMethod : public VisibilityMethod {
   MapKind kind_;
 };
 
-/// Clusters and functions are kept as they are stored; a corner's row is summed when it is asked for.
 class ClusteredMethod : public VisibilityMethod {
  public:
-  explicit ClusteredMethod(const Transfer& transfer)
-      : transfer_(transfer), functions_(transfer.clustered.functions.unpack(transfer.columns())) {
-    std::size_t count = 0;
-    for (const auto& primitive : transfer.primitives) {
-      first_.push_back(primitive.clustered.firstWeights(transfer.clustered.clusters));
-      count += primitive.clustered.cluster.size();
-    }
+  explicit ClusteredMethod(const Transfer& transfer) : transfer_(transfer), decoder_(transfer) {
+    const auto& c = transfer.clustered;
+    double own = 0.0, count = 0.0;
+    for (const auto& primitive : transfer.primitives)
+      for (const auto cluster : primitive.clustered.cluster) {
+        own += 2.0 + static_cast<double>(storedWeightBytes(c, c.clusters[cluster].terms));
+        count += 1.0;
+      }
     const double fractions = transfer.fractionsInRow() ? 0.0 : transfer.directionCount;
-    bytes_.eachVertex = 2.0;
-    double weights = 0.0;
-    for (const auto& primitive : transfer.primitives) weights += static_cast<double>(primitive.clustered.weights.size());
-    bytes_.eachVertex += weights * transfer.clustered.weightBits / 8.0 / static_cast<double>(count);
-    bytes_.shared = (transfer.bytesPerVertex(count) - fractions - bytes_.eachVertex) * static_cast<double>(count);
+    bytes_.eachVertex = own / count;
+    bytes_.shared = (transfer.bytesPerVertex(static_cast<std::size_t>(count)) - fractions - bytes_.eachVertex) * count;
   }
 
   std::string name() const override {
@@ -64,7 +62,7 @@ class ClusteredMethod : public VisibilityMethod {
   LobeFraction at(const SurfacePoint& point) const override {
     std::vector<float> row(transfer_.columns(), 0.0f);
     for (std::size_t c = 0; c < 3; ++c)
-      if (point.weights[c] > 0.0f) add(point.vertices[c], point.weights[c], row);
+      if (point.weights[c] > 0.0f) decoder_.add(point.vertices[c], point.weights[c], row.data());
     return [this, &point, row = std::move(row)](const Lobe& lobe) {
       const double above = lobe64::sgHalfSpaceFraction(glm::dot(glm::dvec3(point.view.normal), glm::dvec3(lobe.axis)), lobe.sharpness);
       return above * visibleShare(row.data(), transfer_.resolution, transfer_.clustered.levels, glm::vec3(lobe.axis), lobe.sharpness);
@@ -72,28 +70,8 @@ class ClusteredMethod : public VisibilityMethod {
   }
 
  private:
-  void add(std::size_t vertex, float share, std::vector<float>& row) const {
-    std::size_t p = 0;
-    while (vertex >= transfer_.primitives[p].clustered.cluster.size()) vertex -= transfer_.primitives[p++].clustered.cluster.size();
-    const auto& own = transfer_.primitives[p].clustered;
-    const auto& cluster = transfer_.clustered.clusters[own.cluster[vertex]];
-    const auto columns = row.size(), count = cluster.mean.size();
-    std::vector<float> factor(count);
-    for (std::size_t d = 0; d < count; ++d) factor[d] = cluster.meanScale * static_cast<float>(cluster.mean[d]) / 32767.0f;
-    for (std::size_t k = 0; k < static_cast<std::size_t>(cluster.terms); ++k) {
-      const float w = cluster.weightScale[k] * static_cast<float>(own.weights[first_[p][vertex] + k]) / 127.0f;
-      for (std::size_t d = 0; d < count; ++d) factor[d] += w * static_cast<float>(cluster.components[k * count + d]);
-    }
-    for (std::size_t j = 0; j < columns; ++j) row[j] += share * transfer_.mean[j];
-    for (std::size_t d = 0; d < count; ++d) {
-      const float* function = functions_.data() + d * columns;
-      for (std::size_t j = 0; j < columns; ++j) row[j] += share * factor[d] * function[j];
-    }
-  }
-
   const Transfer& transfer_;
-  std::vector<float> functions_;
-  std::vector<std::vector<std::size_t>> first_;
+  RowDecoder decoder_;
   StoredBytes bytes_;
 };
 
