@@ -1,6 +1,13 @@
 #pragma once
 /// Inner loops written once, run in the widest registers there are.
 
+#include <array>
+#include <cstdint>
+#include <cstring>
+#if defined(__x86_64__) && !defined(__clang__)
+#include <immintrin.h>  // declares the built-in functions
+#endif
+
 namespace chiaro {
 
 /// Compiler vector extensions: element-wise + - * < ?:. One of these at a time is what a register holds; wider ones compile, badly.
@@ -20,6 +27,75 @@ template <typename Vector>
 [[gnu::always_inline]] inline void storeVector(float* aligned, const Vector& value) {
   *reinterpret_cast<Vector*>(aligned) = value;
 }
+
+// What vector extensions have no word for. GCC's built-in functions check for AVX only once they are inlined where it is enabled; Clang's before.
+#if defined(__x86_64__) && !defined(__clang__)
+#define CHIARO_BUILTINS 1
+#endif
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wpsabi"
+
+/// Replaces the elements by their square roots.
+template <typename Vector>
+[[gnu::always_inline]] inline void takeSquareRoot(Vector& v) {
+#if defined(CHIARO_BUILTINS)
+  if constexpr (sizeof(Vector) == 32)
+    v = __builtin_ia32_sqrtps256(v);
+  else
+    v = __builtin_ia32_sqrtps(v);
+#else
+  for (int i = 0; i < kWidth<Vector>; ++i) v[i] = __builtin_sqrtf(v[i]);
+#endif
+}
+
+/// A bit for each element of a comparison's result that is true.
+template <typename Vector, typename Mask>
+[[gnu::always_inline]] inline unsigned trueElements(const Mask& mask) {
+#if defined(CHIARO_BUILTINS)
+  if constexpr (sizeof(Vector) == 32)
+    return static_cast<unsigned>(__builtin_ia32_movmskps256(reinterpret_cast<const Vector&>(mask)));
+  else
+    return static_cast<unsigned>(__builtin_ia32_movmskps(reinterpret_cast<const Vector&>(mask)));
+#else
+  unsigned result = 0;
+  for (int i = 0; i < kWidth<Vector>; ++i) result |= (mask[i] != 0 ? 1u : 0u) << i;
+  return result;
+#endif
+}
+
+/// By the bits of a byte: which of eight elements are kept, first ones first.
+inline constexpr auto kPacked = [] {
+  struct alignas(32) Order {
+    std::int32_t element[8] = {};
+  };
+  std::array<Order, 256> result{};
+  for (unsigned bits = 0; bits < 256; ++bits) {
+    int kept = 0;
+    for (int i = 0; i < 8; ++i)
+      if ((bits >> i & 1u) != 0) result[bits].element[kept++] = i;
+  }
+  return result;
+}();
+
+/// Writes those of eight aligned floats whose bit is set to `to`, one behind the other; always writes eight, the rest of no meaning.
+/// May be used in place, forwards.
+template <typename Vector>
+[[gnu::always_inline]] inline void storePacked(const float* aligned, unsigned bits, float* to) {
+  const auto& order = kPacked[bits];
+#if defined(CHIARO_BUILTINS)
+  if constexpr (sizeof(Vector) == 32) {
+    using Int8 __attribute__((vector_size(32), may_alias)) = int;
+    const Vector packed = __builtin_ia32_permvarsf256(loadVector<Vector>(aligned), *reinterpret_cast<const Int8*>(order.element));
+    std::memcpy(to, &packed, sizeof(packed));
+    return;
+  }
+#endif
+  float kept[8];
+  for (int i = 0; i < 8; ++i) kept[i] = aligned[order.element[i]];
+  std::memcpy(to, kept, sizeof(kept));
+}
+
+#pragma GCC diagnostic pop
 
 /// Put after the parameters of a lambda for runVectorised().
 #define CHIARO_INLINE __attribute__((always_inline))

@@ -72,8 +72,8 @@ std::size_t nearestTo(const AlignedFloats& px, const AlignedFloats& py, const Al
   return nearest;
 }
 
-/// chord2: of each point to four corners, one corner after the other. Its first part becomes 0 for the points that are farther from all
-/// corners than one of four rivals (rival[k][c]: of rival k to corner c), else 1.
+/// chord2: of each point to four corners, one corner after the other. Its first part becomes 1 for the points that are farther from all
+/// corners than one of four rivals (rival[k][c]: of rival k to corner c), else 0.
 void markUndominated(float* chord2, std::size_t pointStride, const float (&rivals)[4][4]) {
   runVectorised([&]<typename Vector>() CHIARO_INLINE {
     const std::size_t stride = pointStride;
@@ -86,19 +86,51 @@ void markUndominated(float* chord2, std::size_t pointStride, const float (&rival
                    c2 = loadVector<Vector>(chords + 2 * stride + i), c3 = loadVector<Vector>(chords + 3 * stride + i);
       auto keep = (c0 <= rival[0][0]) | (c1 <= rival[0][1]) | (c2 <= rival[0][2]) | (c3 <= rival[0][3]);
       for (int k = 1; k < 4; ++k) keep &= (c0 <= rival[k][0]) | (c1 <= rival[k][1]) | (c2 <= rival[k][2]) | (c3 <= rival[k][3]);
-      storeVector(chords + i, keep ? Vector{} + 1.0f : Vector{});
+      storeVector(chords + i, keep ? Vector{} : Vector{} + 1.0f);
     }
   });
+}
+
+/// What pack() reads or writes: the three coordinates.
+template <typename Float>
+struct Coordinates {
+  Float *x, *y, *z;
+};
+
+/// Keeps the points whose value is at most `limit`, in their order; returns how many. `to` may be `from`. All aligned; up to eight
+/// floats more are written.
+std::size_t pack(Coordinates<const float> source, const float* valueOf, float limit, std::size_t pointCount, Coordinates<float> to) {
+  std::size_t keptCount = 0;
+  runVectorised([&]<typename Vector>() CHIARO_INLINE {
+    const auto [x, y, z] = source;
+    const auto [toX, toY, toZ] = to;
+    const float* value = valueOf;
+    const Vector most = Vector{} + limit;
+    const std::size_t count = pointCount;
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < count; i += 8) {
+      unsigned bits = 0;
+      for (int k = 0; k < 8; k += kWidth<Vector>) bits |= trueElements<Vector>(loadVector<Vector>(value + i + k) <= most) << k;
+      if (count - i < 8) bits &= (1u << (count - i)) - 1u;
+      if (bits == 0) continue;
+      storePacked<Vector>(x + i, bits, toX + kept);
+      storePacked<Vector>(y + i, bits, toY + kept);
+      storePacked<Vector>(z + i, bits, toZ + kept);
+      kept += static_cast<std::size_t>(__builtin_popcount(bits));
+    }
+    keptCount = kept;
+  });
+  return keptCount;
 }
 
 /// angle[i] = 2 asin(chord / 2), at most `clamp`, of the nearest of `count` points to each of sixteen directions. The arcsine is its odd
 /// polynomial interpolated on chord^2 / 4 in [0, 1/2]; relative error 7e-8.
 void nearestAngles(const AlignedFloats& px, const AlignedFloats& py, const AlignedFloats& pz, std::size_t pointCount, const float* qx,
                    const float* qy, const float* qz, float clamp, float* angle) {
-  alignas(64) float chord2[16], ratio[16];
   runVectorised([&]<typename Vector>() CHIARO_INLINE {
     const float *x = px.data(), *y = py.data(), *z = pz.data();
     const std::size_t count = pointCount;
+    const Vector most = Vector{} + clamp;
     constexpr float kSeries[] = {1.0f,          0.166666142f, 0.0750275732f, 0.0440916167f, 0.0358142393f,
                                  -0.00702057912f, 0.107400021f, -0.135916271f, 0.123913495f};
     constexpr int kParts = 16 / kWidth<Vector>;
@@ -120,14 +152,11 @@ void nearestAngles(const AlignedFloats& px, const AlignedFloats& py, const Align
       const Vector s = 0.25f * least[k];
       Vector series = Vector{} + kSeries[8];
       for (int j = 7; j >= 0; --j) series = series * s + kSeries[j];
-      storeVector(chord2 + k * kWidth<Vector>, least[k]);
-      storeVector(ratio + k * kWidth<Vector>, series);
+      takeSquareRoot<Vector>(least[k]);
+      const Vector a = least[k] * series;
+      storeVector(angle + k * kWidth<Vector>, a < most ? a : most);
     }
   });
-  for (int lane = 0; lane < 16; ++lane) {
-    const float a = std::sqrt(chord2[lane]) * ratio[lane];
-    angle[lane] = a < clamp ? a : clamp;
-  }
 }
 
 /// Directions of one tile, those below the horizon of `normal` mirrored in it; a bit for each of those.
@@ -295,32 +324,20 @@ void SsdfTransform::addGroups(const std::vector<std::array<int, 3>>& squares) {
   }
 }
 
-void SsdfTransform::keepNear(const Points& from, glm::vec3 center, float radius, float reach, Points& to) {
+float SsdfTransform::keepNear(const Points& from, glm::vec3 center, float radius, float reach, Points& to) {
   to.reserve(from.count + 16);
   to.count = 0;
   const float least = std::sqrt(chordsTo(from.x, from.y, from.z, from.count, center, chord2_));
   // A little more than the inequality asks for, to be safe from rounding.
   const float most = std::min(least + 2.0f * radius, reach) * 1.00001f + 1e-6f;
   const float most2 = most * most;
-  const float *x = from.x.data(), *y = from.y.data(), *z = from.z.data(), *chord2 = chord2_.data();
-  float *toX = to.x.data(), *toY = to.y.data(), *toZ = to.z.data();
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < from.count; i += 4) {
-    // Points come in the order of the map, so that most fours go together.
-    const auto isNear = std::bit_cast<std::array<std::uint64_t, 2>>(loadVector<Float4>(chord2 + i) <= most2);
-    if ((isNear[0] | isNear[1]) == 0) continue;
-    for (std::size_t j = i; j < std::min(i + 4, from.count); ++j) {
-      toX[kept] = x[j];
-      toY[kept] = y[j];
-      toZ[kept] = z[j];
-      kept += chord2[j] <= most2;
-    }
-  }
+  const auto kept = pack({from.x.data(), from.y.data(), from.z.data()}, chord2_.data(), most2, from.count, {to.x.data(), to.y.data(), to.z.data()});
   to.count = kept;
-  if (kept == 0) return;
+  if (kept == 0) return least;
   pad(to.x, kept);
   pad(to.y, kept);
   pad(to.z, kept);
+  return least;
 }
 
 void SsdfTransform::keepUndominated(Points& points, const glm::vec3* corners) {
@@ -337,34 +354,29 @@ void SsdfTransform::keepUndominated(Points& points, const glm::vec3* corners) {
     }
   }
   markUndominated(chord2_.data(), stride, rival);
-  const float* keep = chord2_.data();
-  float *x = points.x.data(), *y = points.y.data(), *z = points.z.data();
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < points.count; ++i) {
-    const float px = x[i], py = y[i], pz = z[i];
-    x[kept] = px;
-    y[kept] = py;
-    z[kept] = pz;
-    kept += keep[i] != 0.0f;
-  }
+  const auto kept = pack({points.x.data(), points.y.data(), points.z.data()}, chord2_.data(), 0.5f, points.count,
+                         {points.x.data(), points.y.data(), points.z.data()});
   points.count = kept;
   pad(points.x, kept);
   pad(points.y, kept);
   pad(points.z, kept);
 }
 
-void SsdfTransform::fill(const Group& group, const Signal& signal) const {
-  // No edge is near: one texel says what all of them see.
+bool SsdfTransform::seesIn(const Group& group, const Signal& signal) const {
   const auto texel = 16 * std::size_t{tiles_[group.firstTile].number};
-  auto w = storage_.direction(texel);
   std::size_t source = texel;
-  if (!signal.doubleSided && !texelBit(signal.above.data(), texel)) source = nearestAbove(storage_, signal.above, fold(w, signal.normal));
-  const float value = texelBit(signal.visible.data(), source) ? clamp_ : -clamp_;
+  if (!signal.doubleSided && !texelBit(signal.above.data(), texel))
+    source = nearestAbove(storage_, signal.above, fold(storage_.direction(texel), signal.normal));
+  return texelBit(signal.visible.data(), source);
+}
+
+void SsdfTransform::fill(const Group& group, const Signal& signal) const {
+  const float value = seesIn(group, signal) ? clamp_ : -clamp_;
   for (auto t = group.firstTile; t < group.firstTile + group.tileCount; ++t)
     for (int row = 0; row < 4; ++row) std::fill_n(signal.distances + tiles_[t].rowMajor + row * storage_.resolution, 4, value);
 }
 
-void SsdfTransform::visitTile(const Group& group, const Points& points, bool folded, const Signal& signal) const {
+void SsdfTransform::visitTile(const Group& group, const Points& points, bool folded, Kind kind, const Signal& signal) const {
   const auto [number, rowMajor] = tiles_[group.firstTile];
   const std::size_t tile = number, first = 16 * tile;
   const float *qx = storage_.x.data() + first, *qy = storage_.y.data() + first, *qz = storage_.z.data() + first;
@@ -378,7 +390,9 @@ void SsdfTransform::visitTile(const Group& group, const Points& points, bool fol
   }
   nearestAngles(points.x, points.y, points.z, points.count, qx, qy, qz, clamp_, angle);
   unsigned seen = signal.visible[tile];
-  if (below != 0) {
+  if (kind != Kind::mixed) {
+    seen = kind == Kind::seen ? 0xffffu : 0u;
+  } else if (below != 0) {
     const auto mirrored = [&](unsigned lane) {
       return texelBit(signal.visible.data(), nearestAbove(storage_, signal.above, {qx[lane], qy[lane], qz[lane]}));
     };
@@ -400,14 +414,17 @@ void SsdfTransform::visitTile(const Group& group, const Points& points, bool fol
   for (int row = 0; row < 4; ++row) std::copy_n(angle + 4 * row, 4, signal.distances + rowMajor + row * storage_.resolution);
 }
 
-void SsdfTransform::visit(const Group& group, const Points& from, std::size_t depth, const Signal& signal) {
+void SsdfTransform::visit(const Group& group, const Points& from, std::size_t depth, Kind kind, const Signal& signal) {
   const float height = signal.doubleSided ? 2.0f : glm::dot(group.center, signal.normal);
   const bool folded = height <= group.radius + 1e-5f, straddles = folded && height >= -group.radius - 1e-5f;
   const Points* points = &from;
   if (from.count > (group.childCount == 0 ? kFewOfTile : kFew) && group.radius < 0.7f) {
     auto& kept = kept_[depth];
     const float reach = clampChord_ + group.radius;
-    keepNear(from, signal.folded(group.center), group.radius, reach, kept);
+    const float least = keepNear(from, signal.folded(group.center), group.radius, reach, kept);
+    // What is below the horizon has to ask its mirror images, so that it pays to ask once for all of a group.
+    if (kind == Kind::mixed && folded && !straddles && least > 2.0f * group.radius + slack_)
+      kind = seesIn(group, signal) ? Kind::seen : Kind::hidden;
     if (kept.count == 0) {
       if (clampChord_ > slack_) {
         fill(group, signal);
@@ -423,10 +440,10 @@ void SsdfTransform::visit(const Group& group, const Points& from, std::size_t de
     }
   }
   if (group.childCount == 0) {
-    visitTile(group, *points, folded, signal);
+    visitTile(group, *points, folded, kind, signal);
     return;
   }
-  for (auto child = group.firstChild; child < group.firstChild + group.childCount; ++child) visit(groups_[child], *points, depth + 1, signal);
+  for (auto child = group.firstChild; child < group.firstChild + group.childCount; ++child) visit(groups_[child], *points, depth + 1, kind, signal);
 }
 
 void SsdfTransform::operator()(glm::vec3 normal, bool doubleSided, const TexelBits& above, const TexelBits& visible,
@@ -449,7 +466,7 @@ void SsdfTransform::operator()(glm::vec3 normal, bool doubleSided, const TexelBi
   pad(all_.y, all_.count);
   pad(all_.z, all_.count);
   if (chordCapacity_ < 4 * all_.capacity) chord2_ = AlignedFloats(chordCapacity_ = 4 * all_.capacity);
-  for (std::uint32_t g = 0; g < rootCount_; ++g) visit(groups_[g], all_, 0, signal);
+  for (std::uint32_t g = 0; g < rootCount_; ++g) visit(groups_[g], all_, 0, Kind::mixed, signal);
 }
 
 }  // namespace chiaro

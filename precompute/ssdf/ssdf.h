@@ -63,10 +63,14 @@ class SsdfTransform {
   };
   struct Signal;
   void addGroups(const std::vector<std::array<int, 3>>& squares);
-  void visit(const Group& group, const Points& from, std::size_t depth, const Signal& signal);
-  void visitTile(const Group& group, const Points& points, bool folded, const Signal& signal) const;
+  enum class Kind { mixed, seen, hidden };  ///< of all texels of a group, where that is known
+  void visit(const Group& group, const Points& from, std::size_t depth, Kind kind, const Signal& signal);
+  void visitTile(const Group& group, const Points& points, bool folded, Kind kind, const Signal& signal) const;
+  /// No edge is near: one texel says what all of them see.
+  bool seesIn(const Group& group, const Signal& signal) const;
   void fill(const Group& group, const Signal& signal) const;
-  void keepNear(const Points& from, glm::vec3 center, float radius, float reach, Points& to);
+  /// Returns the smallest chord to the centre.
+  float keepNear(const Points& from, glm::vec3 center, float radius, float reach, Points& to);
   void keepUndominated(Points& points, const glm::vec3* corners);
 
   const OctahedralGrid& sampling_;

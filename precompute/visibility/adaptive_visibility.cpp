@@ -14,6 +14,18 @@ constexpr int kOwnPacket = 12;
 
 constexpr Board bitOf(std::size_t texel) { return Board{1} << texel % 64; }
 
+std::array<Board, 4> everyQuarter(Board b) { return {b, b, b, b}; }
+
+/// Tile `k` of a board as a board of the map twice as fine; by quarter of each texel.
+Board doubledQuarters(const std::array<Board, 4>& quarters, std::size_t k) {
+  constexpr Board kQuarter[4] = {0x0505050505050505u, 0x0a0a0a0a0a0a0a0au, 0x5050505050505050u, 0xa0a0a0a0a0a0a0a0u};
+  const auto tile = [&](std::size_t corner) { return static_cast<std::uint16_t>(quarters[corner] >> 16 * k); };
+  if (tile(0) == tile(1) && tile(0) == tile(2) && tile(0) == tile(3)) return doubled(tile(0));
+  Board result = 0;
+  for (std::size_t corner = 0; corner < 4; ++corner) result |= doubled(tile(corner)) & kQuarter[corner];
+  return result;
+}
+
 /// Of the four texels `steps` levels finer that meet at the centre of `texel`: the last is right of it and below, which is
 /// what OctahedralGrid::texelAt takes the centre for. Texels: 64 board + bit.
 std::size_t besideCentre(std::size_t texel, std::size_t steps, std::size_t corner) {
@@ -47,6 +59,8 @@ AdaptiveVisibility::AdaptiveVisibility(const RayScene& rays, const AdaptiveSpher
   marked_.resize(most);
   changed_.resize(most);
   otherSide_.resize(most);
+  horizon_.resize(most);
+  whole_.resize(most);
 }
 
 std::uint64_t AdaptiveVisibility::operator()(const Viewpoint& viewpoint) {
@@ -114,9 +128,25 @@ void AdaptiveVisibility::inherit(std::size_t level) {
       seen |= below & nearSeen & ~nearHidden;
       hidden |= below & nearHidden & ~nearSeen;
     }
+    auto seenCorners = everyQuarter(seen), hiddenCorners = everyQuarter(hidden);
+    if (((seen & coarse.around4(from.hidden.data(), b)) | (hidden & coarse.around4(from.seen.data(), b))) != 0) {
+      // An edge that runs across is a staircase of texels: where the two neighbours at a corner agree against the texel and the two others,
+      // that quarter of it is taken for theirs. A third of what is traced in vain goes.
+      const auto at = [&](const std::vector<Board>& bits) {
+        return std::array{coarse.at(bits.data(), b, SphereBoards::left), coarse.at(bits.data(), b, SphereBoards::right),
+                          coarse.at(bits.data(), b, SphereBoards::top), coarse.at(bits.data(), b, SphereBoards::bottom)};
+      };
+      const auto s = at(from.seen), h = at(from.hidden);
+      for (std::size_t corner = 0; corner < 4; ++corner) {
+        const auto x = corner % 2, y = 2 + corner / 2;  // the sides that meet there; x ^ 1 and y ^ 1 are opposite
+        const auto toHidden = seen & h[x] & h[y] & s[x ^ 1] & s[y ^ 1], toSeen = hidden & s[x] & s[y] & h[x ^ 1] & h[y ^ 1];
+        seenCorners[corner] = (seen | toSeen) & ~toHidden;
+        hiddenCorners[corner] = (hidden | toHidden) & ~toSeen;
+      }
+    }
     for (std::size_t k = 0; k < 4; ++k) {
-      to.seen[4 * b + k] = doubled(static_cast<std::uint16_t>(seen >> 16 * k)) & to.side[4 * b + k];
-      to.hidden[4 * b + k] = doubled(static_cast<std::uint16_t>(hidden >> 16 * k)) & to.side[4 * b + k];
+      to.seen[4 * b + k] = doubledQuarters(seenCorners, k) & to.side[4 * b + k];
+      to.hidden[4 * b + k] = doubledQuarters(hiddenCorners, k) & to.side[4 * b + k];
     }
   }
 }
@@ -172,6 +202,11 @@ void AdaptiveVisibility::refine(std::size_t level) {
     if (map.side[b] != 0) round_.push_back(static_cast<std::uint32_t>(b));
     otherSide_[b] = ~map.side[b];
   }
+  if (finest)
+    for (std::size_t b = 0; b < boards.boardCount; ++b) {
+      horizon_[b] = map.side[b] == 0 ? 0 : map.side[b] & boards.around4(otherSide_.data(), b);
+      whole_[b] = 0;
+    }
   for (bool first = true; !round_.empty(); first = false) {
     next_.clear();
     for (const auto b : round_) {
@@ -180,7 +215,7 @@ void AdaptiveVisibility::refine(std::size_t level) {
       Board pending = map.side[b] & ~(seen | hidden);
       if (seen != 0) pending |= seen & boards.around4(map.hidden.data(), b);
       if (hidden != 0) pending |= hidden & boards.around4(map.seen.data(), b);
-      if (first && finest) pending |= map.side[b] & boards.around4(otherSide_.data(), b);
+      if (finest) pending |= horizon_[b] & (first ? SphereBoards::sparse() : whole_[b] != 0 ? ~Board{0} : Board{0});
       pending &= ~map.traced[b];
       if (pending == 0) continue;
       map.traced[b] |= pending;
@@ -207,6 +242,16 @@ void AdaptiveVisibility::refine(std::size_t level) {
       const std::size_t b = next_[i];
       const auto changed = changed_[b];
       changed_[b] = 0;
+      // Where there is something low on the horizon there is more.
+      const bool low = finest && (changed & horizon_[b]) != 0 && whole_[b] != 2;
+      if (low) {
+        whole_[b] = 2;
+        for (const auto other : boards.beside[b]) {
+          if (horizon_[other] == 0 || whole_[other] != 0) continue;
+          whole_[other] = 1;
+          mark(other);
+        }
+      }
       constexpr Board kRim = SphereBoards::rim();
       if ((changed & kRim) == 0) continue;
       for (const auto other : boards.beside[b]) mark(other);

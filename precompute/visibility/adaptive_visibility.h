@@ -32,7 +32,8 @@ int conservativeCoarse(double angle);
 /// parent is below the horizon and the texels about the parent disagree; and where a traced value turns out to differ from one beside it,
 /// that one is traced too, until there is no more such pair. So every pair that differs has been traced, and a feature is followed
 /// to its end if the level before has met it anywhere. What falls between the coarse texels altogether is missed, except next to the
-/// horizon: nine of ten misses of a scanned surface are there, so the last row of texels above it is always traced.
+/// horizon: nine of ten misses of a scanned surface are there, so of the last row of texels above it one in eight is traced whatever the
+/// coarse levels say, and all of it about one that turns out other than they said.
 class AdaptiveVisibility {
  public:
   AdaptiveVisibility(const RayScene& rays, const AdaptiveSphere& sphere);
@@ -71,7 +72,8 @@ class AdaptiveVisibility {
   const AdaptiveSphere& sphere_;
   OcclusionPacket packet_;
   std::vector<Map> maps_;  ///< by level
-  std::vector<Board> otherSide_;
+  std::vector<Board> otherSide_, horizon_;  ///< of the finest level
+  std::vector<std::uint8_t> whole_;  ///< a board's part of the horizon is traced throughout: 1 as one beside it is, 2 for what it met
   bool bothSides_ = false;
   std::vector<std::uint32_t> round_, next_;
   std::vector<std::uint8_t> marked_;

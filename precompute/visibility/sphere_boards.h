@@ -48,6 +48,9 @@ struct SphereBoards {
   /// The bits of `here` moved one texel so that each lands on the texel whose `side` it was beside, those of `there` moved in.
   static Board shifted(Board here, Board there, Side side, bool mirrored);
 
+  /// One texel in each row and column of a board; of boards in a row, in seven of eight diagonals too.
+  static constexpr Board sparse() { return 0x1280000440000821u; }
+
   /// The texels along the sides of a board.
   static constexpr Board rim() { return 0xf000f000000f000fu | 0x8888111188881111u; }
 

@@ -92,6 +92,20 @@ TEST(SphereBoardsTest, DoubledTexelsAreFour) {
   }
 }
 
+TEST(SphereBoardsTest, SparseTexelsMeetEveryRowAndColumn) {
+  const SphereBoards boards(8);
+  TexelBits texels;
+  boards.toTexels({SphereBoards::sparse()}, texels);
+  const OctahedralGrid grid(8);
+  int rows[8] = {}, columns[8] = {};
+  for (std::size_t t = 0; t < grid.texelCount; ++t) {
+    if (!texelBit(texels.data(), t)) continue;
+    ++rows[grid.rowMajor[t] / 8];
+    ++columns[grid.rowMajor[t] % 8];
+  }
+  for (int i = 0; i < 8; ++i) EXPECT_TRUE(rows[i] == 1 && columns[i] == 1) << i;
+}
+
 Scene doubleSided(Scene scene) {
   scene.materials.resize(1);
   scene.materials[0].doubleSided = true;
@@ -171,6 +185,15 @@ TEST(AdaptiveVisibilityTest, AThinSlitIsFollowedToItsEnds) {
   constexpr double kFarEnds = 5e-4, kFarEndsOfThin = 2e-3;
   EXPECT_LE(differingShare(slit(0.1f), 64, 256), kFarEnds);
   EXPECT_LE(differingShare(slit(0.02f), 64, 256), kFarEndsOfThin);
+}
+
+/// A wide floor with low walls at its far ends, lower than a coarse texel: nothing but the horizon's own texels meets them.
+TEST(AdaptiveVisibilityTest, WhatIsLowOnTheHorizonIsFollowed) {
+  Primitive wall;
+  addGrid(wall, {-40, 0, -30}, {80, 0, 0}, {0, 0.6f, 0}, 1);
+  addGrid(wall, {30, 0, -20}, {0, 0, 20}, {0, 1.0f, 0}, 1);
+  // All of the horizon traced leaves 1.0e-4 (the tops of the walls end between texels), none of it 3.0e-3.
+  EXPECT_LE(differingShare(sceneWith({floorGrid(1.0f, 4), wall}), 32, 256), 3e-4);
 }
 
 TEST(AdaptiveVisibilityTest, HardlyDependsOnScale) {
