@@ -49,9 +49,9 @@ std::unique_ptr<Journal> openJournal(const Scene& scene, const BakeSettings& set
   if (storage.journal.empty()) return nullptr;
   auto journal = std::make_unique<Journal>(storage.journal, fingerprintOf(scene, settings, storage.program), storage.fresh);
   if (!storage.notice) return journal;
-  if (journal->found() == Journal::Found::same) storage.notice(storage.journal.string() + ": goes on from here");
+  if (journal->found() == Journal::Found::same) storage.notice(storage.journal.string() + ": goes on from what an earlier bake has finished");
   if (journal->found() == Journal::Found::other)
-    storage.notice(storage.journal.string() + ": is of another scene, other settings or another version: starts anew");
+    storage.notice(storage.journal.string() + ": is of another scene, other settings or another build of this program: starts anew");
   return journal;
 }
 

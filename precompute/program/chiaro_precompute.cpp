@@ -97,6 +97,12 @@ bool isBaked(const std::filesystem::path& path) {
   return std::search(bytes.begin(), bytes.end(), mark.begin(), mark.end()) != bytes.end();
 }
 
+/// What is finished of a bake that is not over lies beside its output.
+std::filesystem::path partialOf(const std::filesystem::path& output) {
+  auto path = output;
+  return path += ".partial";
+}
+
 void finish(Options& options) {
   auto& settings = options.settings;
   const auto inRange = [](const char* name, double value, double least, double most) {
@@ -121,11 +127,14 @@ void finish(Options& options) {
   if (options.output.extension() != ".glb")
     throw usageError("--output", "\"" + options.output.string() + "\" does not end in .glb", "name it so: it is a binary glTF");
   if (isSameFile(options.json, options.output)) throw usageError("--json", "names the same file as --output", "give two names");
+  if (isSameFile(options.json, partialOf(options.output)))
+    throw usageError("--json", "names the file of what is finished so far", "give another name");
   const auto lost = [](const char* option) { return usageError(option, "names the scene itself, which would be lost", "give another name"); };
   if (isSameFile(options.json, options.scene)) throw lost("--json");
   if (isSameFile(options.output, options.scene) && !isBaked(options.scene)) throw lost("--output");
   // An hour's work should not be lost to a typing mistake.
   requireWritable(options.output);
+  requireWritable(partialOf(options.output));
   if (!options.json.empty()) requireWritable(options.json);
 }
 
@@ -176,12 +185,6 @@ void printSummary(const Options& options, const BakeRun& run, const BakeReport& 
     for (const auto& [name, value] : report.error) std::printf("  %-46s %.5f\n", name.c_str(), value);
     std::printf("peak memory: %.0f MiB\n", static_cast<double>(run.peakMemoryBytes) / 1048576.0);
   }
-}
-
-/// What is finished of a bake that is not over lies beside its output.
-std::filesystem::path partialOf(const std::filesystem::path& output) {
-  auto path = output;
-  return path += ".partial";
 }
 
 /// A bake that goes on must be the same program's: its version, and its very bytes where the system shows them.
@@ -239,7 +242,7 @@ ExitCode precompute(int argc, char** argv) {
                             .memoryLimit = static_cast<std::size_t>(options.memoryLimitMib * 1048576.0),
                             .notice = [&](const std::string& line) {
                               bar.clear();
-                              if (!options.quiet) std::fprintf(stderr, "%s\n", line.c_str());
+                              if (!options.quiet) std::fprintf(stderr, "chiaro-precompute: %s\n", line.c_str());
                             }};
   const auto baked = naming(options.scene, [&] {
     try {
