@@ -1,24 +1,16 @@
 #include "precompute/bake.h"
 
-#include <algorithm>
-#include <atomic>
 #include <chrono>
-#include <cmath>
-#include <mutex>
+#include <memory>
 #include <string>
+#include <utility>
 
 #include "assets/error.h"
 #include "precompute/bake_clustered.h"
-#include "precompute/bake_error.h"
-#include "precompute/compression/encode.h"
-#include "precompute/compression/pca.h"
-#include "precompute/embree/ray_scene.h"
-#include "precompute/parallel.h"
-#include "precompute/ssdf/ssdf.h"
+#include "precompute/bake_pca.h"
+#include "precompute/bake_task.h"
+#include "precompute/journal/fingerprint.h"
 #include "precompute/visibility/fractions.h"
-#include "precompute/visibility/octahedral_grid.h"
-#include "precompute/visibility/viewpoints.h"
-#include "precompute/visibility/visibility.h"
 
 namespace chiaro {
 namespace {
@@ -54,78 +46,15 @@ void requireValid(const BakeSettings& settings) {
   if (bits != 0 && bits != 4 && bits != 8 && bits != 16) throw usageError("function bits", "are none of 0, 4, 8 and 16", "use 0");
 }
 
-/// What the first stage leaves behind for every vertex of the scene.
-struct Traced {
-  FixedPointMatrix ssdf;                 ///< #vertices by #texels
-  std::vector<std::uint8_t> fractions;   ///< #vertices by #directions
-  std::uint64_t rays = 0;
-  double visibilitySeconds = 0.0, ssdfSeconds = 0.0;
-};
-
-/// A thread's working memory.
-struct Scratch {
-  explicit Scratch(const OctahedralGrid& grid) : cosine(grid.texelCount), transform(grid, grid), distances(grid.texelCount) {}
-  AlignedFloats cosine;
-  TexelBits above, visible;
-  SsdfTransform transform;
-  std::vector<float> distances;
-};
-
-Traced traceScene(const RayScene& rays, const OctahedralGrid& grid, const std::vector<Viewpoint>& viewpoints,
-                  const VisibleFractions& visibleFractions, const BakeSettings& settings, const std::function<void(double)>& progress) {
-  constexpr std::size_t kBlock = 32;
-  const auto directionCount = static_cast<std::size_t>(settings.directionCount);
-  Traced traced;
-  traced.ssdf = FixedPointMatrix(viewpoints.size(), grid.texelCount, kMaxDistance);
-  traced.fractions.resize(viewpoints.size() * directionCount);
-
-  const auto start = Clock::now();
-  StepCounter finished(viewpoints.size(), progress);
-  std::mutex mutex;
-  double visibilityTime = 0.0, ssdfTime = 0.0;  // of all threads together
-  parallelBlocks(settings.threads, (viewpoints.size() + kBlock - 1) / kBlock, [&](std::size_t block) {
-    Scratch scratch(grid);
-    std::vector<float> fractions(directionCount);
-    std::uint64_t rayCount = 0;
-    double visibilitySeconds = 0.0, ssdfSeconds = 0.0;
-    const auto end = std::min((block + 1) * kBlock, viewpoints.size());
-    for (std::size_t v = block * kBlock; v < end; ++v) {
-      const auto& viewpoint = viewpoints[v];
-      const auto traceStart = Clock::now();
-      texelsAbove(grid, viewpoint.normal, scratch.cosine, scratch.above);
-      rayCount += traceVisibility(rays, grid, viewpoint, scratch.above, scratch.visible);
-      visibleFractions(viewpoint, scratch.cosine, scratch.above, scratch.visible, fractions.data());
-      for (std::size_t j = 0; j < directionCount; ++j)
-        traced.fractions[v * directionCount + j] = static_cast<std::uint8_t>(std::lrint(255.0f * fractions[j]));
-      const auto ssdfStart = Clock::now();
-      scratch.transform(viewpoint.normal, viewpoint.doubleSided, scratch.above, scratch.visible, scratch.above, scratch.visible,
-                        scratch.distances.data());
-      traced.ssdf.setRow(v, scratch.distances.data());
-      visibilitySeconds += std::chrono::duration<double>(ssdfStart - traceStart).count();
-      ssdfSeconds += secondsSince(ssdfStart);
-    }
-    {
-      const std::lock_guard lock(mutex);
-      traced.rays += rayCount;
-      visibilityTime += visibilitySeconds;
-      ssdfTime += ssdfSeconds;
-    }
-    finished.add(end - block * kBlock);
-  });
-  const double wall = secondsSince(start);
-  traced.visibilitySeconds = wall * visibilityTime / (visibilityTime + ssdfTime);
-  traced.ssdfSeconds = wall * ssdfTime / (visibilityTime + ssdfTime);
-  return traced;
-}
-
-void storeFractions(const Traced& traced, const Scene& scene, Transfer& transfer) {
-  transfer.primitives.resize(scene.primitives.size());
-  auto next = traced.fractions.begin();
-  for (std::size_t p = 0; p < scene.primitives.size(); ++p) {
-    const auto count = static_cast<std::ptrdiff_t>(scene.primitives[p].positions.size()) * transfer.directionCount;
-    transfer.primitives[p].visibility.assign(next, next + count);
-    next += count;
-  }
+/// The journal that this bake goes on from, or a new one.
+std::unique_ptr<Journal> openJournal(const Scene& scene, const BakeSettings& settings, const BakeStorage& storage) {
+  if (storage.journal.empty()) return nullptr;
+  auto journal = std::make_unique<Journal>(storage.journal, fingerprintOf(scene, settings, storage.program), storage.fresh);
+  if (!storage.notice) return journal;
+  if (journal->found() == Journal::Found::same) storage.notice(storage.journal.string() + ": goes on from what an earlier bake has finished");
+  if (journal->found() == Journal::Found::other)
+    storage.notice(storage.journal.string() + ": is of another scene, other settings or another build of this program: starts anew");
+  return journal;
 }
 
 /// What the file says about its making. No times: the same bake gives the same bytes.
@@ -168,7 +97,7 @@ BakeSettings resolvedSettings(const BakeSettings& given) {
   return settings;
 }
 
-BakedScene bake(const Scene& scene, const BakeSettings& given, BakeReport& report, const ProgressHandler& progress) {
+BakedScene bake(Scene scene, const BakeSettings& given, BakeReport& report, const ProgressHandler& progress, const BakeStorage& storage) {
   const auto settings = resolvedSettings(given);
   const auto start = Clock::now();
   const auto stage = [&](const std::string& name) {
@@ -178,47 +107,33 @@ BakedScene bake(const Scene& scene, const BakeSettings& given, BakeReport& repor
   };
   report = {};
   BakedScene baked;
-  baked.scene = prepareScene(scene, settings.creaseAngle, report.repairs);
+  baked.scene = prepareScene(std::move(scene), settings.creaseAngle, report.repairs);
   if (baked.scene.triangleCount() == 0) throw inputError("scene", "has no triangle with an area", "give a file with a surface in it");
   if (settings.refine.error != 0.0f)
     baked.scene = refineScene(std::move(baked.scene), settings.refine, settings.threads, report.refinement, stage("refinement"));
   report.vertices = baked.scene.vertexCount();
   report.triangles = baked.scene.triangleCount();
 
-  const RayScene rays(baked.scene);
-  const OctahedralGrid grid(settings.resolution);
   auto& transfer = baked.transfer;
   transfer.resolution = settings.resolution;
   transfer.directionCount = settings.directionCount;
   transfer.directionSharpness = settings.directionSharpness;
   transfer.directions = fibonacciDirections(settings.directionCount);
 
+  const auto journal = openJournal(baked.scene, settings, storage);
+  const RayScene rays(baked.scene);
   const auto viewpoints = viewpointsOf(baked.scene, rays);
-  if (settings.compression != Compression::pca) {
-    bakeClustered(rays, viewpoints, settings, baked, report, stage);
-    baked.facts = factsOf(settings, report);
-    report.seconds.total = secondsSince(start);
-    return baked;
-  }
-  const VisibleFractions visibleFractions(grid, transfer.directions, settings.directionSharpness);
-  const auto traced = traceScene(rays, grid, viewpoints, visibleFractions, settings, stage("visibility"));
-  storeFractions(traced, baked.scene, transfer);
-  report.raysTraced = traced.rays;
-  report.seconds.visibility = traced.visibilitySeconds;
-  report.seconds.ssdf = traced.ssdfSeconds;
-
-  const auto compressionStart = Clock::now();
-  std::vector<float> columnWeight(grid.texelCount);
-  for (std::size_t t = 0; t < grid.texelCount; ++t) columnWeight[grid.rowMajor[t]] = grid.solidAngle[t];
-  const PcaSettings pcaSettings{.terms = settings.terms, .seed = settings.seed, .threads = settings.threads};
-  const auto pca = computePca(traced.ssdf, columnWeight, pcaSettings, stage("compression"));
-  encodePca(pca, baked.scene, transfer);
-  report.seconds.compression = secondsSince(compressionStart);
-
-  const TracedSignal signal{.grid = &grid, .rays = &rays, .viewpoints = &viewpoints, .ssdf = &traced.ssdf};
-  report.terms = transfer.terms;
-  report.bytesPerVertex = transfer.bytesPerVertex(report.vertices);
-  report.error = measureBakeError(signal, pca, transfer, settings, stage("error"));
+  giveBackFreedMemory();
+  const BakeTask task{.rays = rays,
+                      .viewpoints = viewpoints,
+                      .settings = settings,
+                      .journal = journal.get(),
+                      .memory = MemoryBudget(storage.memoryLimit),
+                      .stage = stage};
+  if (settings.compression == Compression::pca)
+    bakePca(task, baked, report);
+  else
+    bakeClustered(task, baked, report);
   baked.facts = factsOf(settings, report);
   report.seconds.total = secondsSince(start);
   return baked;

@@ -2,6 +2,7 @@
 /// From a scene to its compressed radiance transfer.
 
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <string>
 #include <vector>
@@ -59,7 +60,8 @@ struct RepairReport {
 struct BakeReport {
   std::size_t vertices = 0;
   std::size_t triangles = 0;
-  std::uint64_t raysTraced = 0;
+  std::size_t verticesResumed = 0;  ///< taken from an earlier bake's journal
+  std::uint64_t raysTraced = 0;     ///< with those of the earlier bake
   int terms = 0;
   double bytesPerVertex = 0.0;
   struct { double visibility = 0, ssdf = 0, compression = 0, total = 0; } seconds;
@@ -70,16 +72,29 @@ struct BakeReport {
   std::vector<std::pair<std::string, double>> error;
 };
 
+/// Where a bake keeps what it works on. None of it changes the result.
+struct BakeStorage {
+  /// File for what is finished so far (precompute/journal/journal.h), made beside the output. Stays when the bake is stopped, and a later
+  /// one goes on from it; stays when the bake is done, too, until the caller has the result safe and removes it. Empty: none.
+  std::filesystem::path journal;
+  bool fresh = false;           ///< start anew whatever is in the journal
+  std::string program;          ///< name and version of what bakes; another one starts anew
+  std::size_t memoryLimit = 0;  ///< bytes that the process may have resident; what does not fit is read back from the journal. 0: no limit
+  std::function<void(const std::string&)> notice{};  ///< one line about what was found in the journal; may be empty
+};
+
 /// stage name, share done in [0,1]. Called from one thread at a time.
 using ProgressHandler = std::function<void(const std::string& stage, double done)>;
 
 /// `settings` with every automatic value that does not depend on the scene filled in. Throws Error (usage) for one out of range.
 BakeSettings resolvedSettings(const BakeSettings& settings);
 
-/// Repairs, refines where asked to, traces, transforms, compresses. Same bytes for any thread count. Throws Error for a scene with no triangle.
-BakedScene bake(const Scene& scene, const BakeSettings& settings, BakeReport& report, const ProgressHandler& progress = {});
+/// Repairs, refines where asked to, traces, transforms, compresses. Same bytes for any thread count, any memory limit, and however often it
+/// was stopped and resumed. Throws Error: a scene with no triangle, a memory limit that is too low (usage, before the long work), a journal
+/// that cannot be written (unwritableOutput). What `progress` throws stops the bake at the end of a block.
+BakedScene bake(Scene scene, const BakeSettings& settings, BakeReport& report, const ProgressHandler& progress = {}, const BakeStorage& storage = {});
 
 /// Only the repair, welding, normals and tangents of the above (the reference renderer and the viewer see the same mesh).
-Scene prepareScene(const Scene& scene, float creaseAngle, RepairReport& report);
+Scene prepareScene(Scene scene, float creaseAngle, RepairReport& report);
 
 }  // namespace chiaro

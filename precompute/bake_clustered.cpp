@@ -7,11 +7,15 @@
 #include <mutex>
 #include <numbers>
 #include <numeric>
+#include <optional>
 #include <random>
 
 #include "precompute/clustered_error.h"
 #include "precompute/compression/encode_clusters.h"
 #include "precompute/compression/product.h"
+#include "precompute/fraction_bytes.h"
+#include "precompute/journal/pca_record.h"
+#include "precompute/journal/row_store.h"
 #include "precompute/parallel.h"
 #include "precompute/ssdf/ssdf.h"
 #include "precompute/transfer_rows.h"
@@ -36,7 +40,6 @@ constexpr float kFractionWeight = 0.3f;
 
 constexpr std::size_t kMostSampled = 8192;     // rows the shared functions are made from
 constexpr std::size_t kMostTraining = 65536;   // rows the clusters are made from
-constexpr std::size_t kBlock = 128;            // vertices projected together: part of the result's bits
 
 /// `wanted` of `count` in rising order, or all.
 std::vector<std::uint32_t> chosen(std::size_t count, std::size_t wanted, std::uint32_t seed) {
@@ -49,26 +52,6 @@ std::vector<std::uint32_t> chosen(std::size_t count, std::size_t wanted, std::ui
   std::sort(all.begin(), all.end());
   return all;
 }
-
-/// The vertices' bytes of what is not part of the compressed row.
-class FractionBytes {
- public:
-  FractionBytes(const Scene& scene, Transfer& transfer) : directionCount_(static_cast<std::size_t>(transfer.directionCount)) {
-    transfer.primitives.resize(scene.primitives.size());
-    for (std::size_t p = 0; p < scene.primitives.size(); ++p) {
-      auto& bytes = transfer.primitives[p].visibility;
-      bytes.resize(scene.primitives[p].positions.size() * directionCount_);
-      for (std::size_t i = 0; i < scene.primitives[p].positions.size(); ++i) place_.push_back(bytes.data() + i * directionCount_);
-    }
-  }
-  void set(std::size_t vertex, const float* fractions) {
-    for (std::size_t j = 0; j < directionCount_; ++j) place_[vertex][j] = static_cast<std::uint8_t>(std::lrint(255.0f * fractions[j]));
-  }
-
- private:
-  std::size_t directionCount_;
-  std::vector<std::uint8_t*> place_;
-};
 
 std::vector<float> columnWeights(const TransferRows& rows, bool joint) {
   std::vector<float> weight;
@@ -107,12 +90,12 @@ class Projection {
   RowMatrix matrix_;
 };
 
-std::vector<float> coordinateScales(const Pca& pca, std::size_t sampled) {
+CoordinateScale coordinateScales(const Pca& pca, std::size_t sampled) {
   std::vector<float> scale(static_cast<std::size_t>(pca.terms), 1e-6f);
   for (std::size_t i = 0; i < sampled; ++i)
     for (std::size_t k = 0; k < scale.size(); ++k) scale[k] = std::max(scale[k], std::abs(pca.weights[i * scale.size() + k]));
   for (float& s : scale) s *= 1.25f;  // rows outside the sample may be larger
-  return scale;
+  return {scale};
 }
 
 int automatic(int wanted, std::size_t vertices, std::size_t verticesEach, int least, int most) {
@@ -134,10 +117,36 @@ ClusterEncoding encodingOf(const BakeSettings& settings) {
           .threads = settings.threads};
 }
 
+/// What a bake needs beside what is there when tracing starts, stage by stage, with or without the large parts in memory.
+struct Needs {
+  std::size_t vertices = 0, rowColumns = 0, columns = 0, functions = 0, sampled = 0, clusters = 0, terms = 0, fractionBytes = 0;
+  PcaSettings pca;
+  int samplingResolution = 0, threads = 0;
+
+  std::size_t bytes(bool coordinatesInMemory, bool sampleInMemory) const {
+    const auto coordinates = coordinatesInMemory ? 2 * functions * vertices : 0;
+    const auto sample = sampleInMemory ? 2 * columns * sampled : 0;
+    const auto texels = static_cast<std::size_t>(samplingResolution) * static_cast<std::size_t>(samplingResolution);
+    // A block as floats, as 16 bits and as a record; boards, distances and sums of the maps that are traced.
+    const auto tracing = static_cast<std::size_t>(threadCount(threads)) * (8 * RowBlocks::kRows * rowColumns + 96 * texels);
+    const auto always = vertices * (4 + fractionBytes) + (fractionBytes > 0 ? 8 * vertices : 0);
+    const auto basis = 4 * functions * columns;
+    const auto model = 4 * clusters * (terms + 1) * functions;
+    const auto training = std::min(vertices, kMostTraining) * functions * 4;
+    const auto measured = 4 * std::min<std::size_t>(clusters, 256) * (terms + 1) * columns + 2 * 256 * rowColumns * 4;
+    return always + std::max({sample + std::max(tracing, pcaMemory(sampled, columns, pca)),
+                              coordinates + 2 * basis + tracing,
+                              coordinates + basis + 2 * training + model,
+                              coordinates + basis + 2 * model + 9 * vertices * terms,
+                              2 * basis + model + 3 * vertices * terms + 8 * vertices + measured + tracing});
+  }
+};
+
 }  // namespace
 
-void bakeClustered(const RayScene& rays, const std::vector<Viewpoint>& viewpoints, const BakeSettings& settings, BakedScene& baked,
-                   BakeReport& report, const std::function<std::function<void(double)>(const std::string&)>& stage) {
+void bakeClustered(const BakeTask& task, BakedScene& baked, BakeReport& report) {
+  const auto& settings = task.settings;
+  const auto& viewpoints = task.viewpoints;
   auto& transfer = baked.transfer;
   const bool joint = settings.compression == Compression::joint;
   const TransferRows::Layout layout{.resolution = settings.resolution,
@@ -146,27 +155,71 @@ void bakeClustered(const RayScene& rays, const std::vector<Viewpoint>& viewpoint
                               .levels = joint ? kLevels : std::vector<VisibilityLevel>{},
                               .directions = transfer.directions,
                               .directionSharpness = transfer.directionSharpness};
-  const TransferRows rows(rays, viewpoints, layout);
+  const TransferRows rows(task.rays, viewpoints, layout);
   transfer.clustered.levels = layout.levels;
   const auto count = viewpoints.size();
   const auto columns = joint ? rows.size() : rows.texels();
-  FractionBytes fractionBytes(baked.scene, transfer);
+  // With levels the fractions are part of a row, else bytes beside it.
+  const auto directions = layout.directions.size(), sideBytes = joint ? 0 : directions;
+  const PcaSettings pcaSettings{.terms = automatic(settings.functions, count, 160, 32, 320), .iterations = 2, .seed = settings.seed, .threads = settings.threads};
+  const ClusterSettings clusterSettings{.clusters = automatic(settings.clusters, count, 80, 1, 1024),
+                                        .terms = settings.terms,
+                                        .seed = settings.seed,
+                                        .threads = settings.threads};
 
+  const Needs needs{.vertices = count,
+                    .rowColumns = rows.size(),
+                    .columns = columns,
+                    .functions = static_cast<std::size_t>(pcaSettings.terms),
+                    .sampled = std::min(count, kMostSampled),
+                    .clusters = static_cast<std::size_t>(clusterSettings.clusters),
+                    .terms = static_cast<std::size_t>(settings.terms),
+                    .fractionBytes = directions,
+                    .pca = pcaSettings,
+                    .samplingResolution = settings.samplingResolution,
+                    .threads = settings.threads};
+  const bool onDisk = task.journal != nullptr;
+  const bool coordinatesInMemory = !onDisk || task.memory.fits(needs.bytes(true, true));
+  const bool sampleInMemory = !onDisk || task.memory.fits(needs.bytes(coordinatesInMemory, true));
+  task.memory.require(needs.bytes(coordinatesInMemory, sampleInMemory));
+  const auto place = [&](BakeRecord kind, bool inMemory) {
+    return RowStore::Place{.journal = task.journal, .kind = static_cast<std::uint32_t>(kind), .inMemory = inMemory};
+  };
+
+  std::optional<FractionBytes> fractionBytes;
+  if (!joint) fractionBytes.emplace(baked.scene, transfer);
   TraceTally tally;
   std::mutex mutex;
   double traceWall = 0.0;
-  const auto progress = stage("visibility");
+  const auto progress = task.stage("visibility");
   StepCounter steps(count, progress);
-  /// Traces `vertices` block by block and hands each block's rows on.
-  const auto trace = [&](const std::vector<std::uint32_t>& vertices, const std::function<void(std::size_t, std::size_t, const float*)>& use) {
+  /// Traces those blocks of `vertices` that an earlier bake has not left in the journal. pack: one row into the store's numbers, a block at a time.
+  const auto trace = [&](const std::vector<std::uint32_t>& vertices, RowStore& store,
+                         const std::function<void(const float*, std::size_t, std::int16_t*)>& pack) {
     const auto start = Clock::now();
-    parallelBlocks(settings.threads, (vertices.size() + kBlock - 1) / kBlock, [&](std::size_t block) {
-      const auto first = block * kBlock, n = std::min(kBlock, vertices.size() - first);
+    const auto keepFractions = [&](std::size_t first, std::size_t n, const std::uint8_t* side) {
+      if (!fractionBytes) return;
+      for (std::size_t i = 0; i < n; ++i) fractionBytes->set(vertices[first + i], side + i * sideBytes);
+    };
+    std::size_t resumed = 0;
+    const auto missing = store.restore([&](std::size_t block, std::uint64_t blockRays, const std::uint8_t* side) {
+      keepFractions(block * RowBlocks::kRows, store.rowsOf(block), side);
+      tally.rays += blockRays;
+      resumed += store.rowsOf(block);
+    });
+    report.verticesResumed += resumed;
+    if (resumed > 0) steps.add(resumed);
+    parallelBlocks(settings.threads, missing.size(), [&](std::size_t i) {
+      const auto block = missing[i], first = block * RowBlocks::kRows, n = store.rowsOf(block);
       std::vector<float> buffer(n * rows.size());
+      std::vector<std::int16_t> packed(n * store.columns());
+      std::vector<std::uint8_t> side(n * sideBytes);
       const auto part = rows(std::span(vertices).subspan(first, n), buffer.data(), rows.size());
       if (!joint)
-        for (std::size_t i = 0; i < n; ++i) fractionBytes.set(vertices[first + i], buffer.data() + i * rows.size() + columns);
-      use(first, n, buffer.data());
+        for (std::size_t v = 0; v < n; ++v) toFractionBytes(buffer.data() + v * rows.size() + columns, directions, side.data() + v * sideBytes);
+      keepFractions(first, n, side.data());
+      pack(buffer.data(), n, packed.data());
+      store.put(block, part.rays, packed.data(), side.data());
       const std::lock_guard lock(mutex);
       tally += part;
       steps.add(n);
@@ -175,31 +228,44 @@ void bakeClustered(const RayScene& rays, const std::vector<Viewpoint>& viewpoint
   };
 
   const auto sample = chosen(count, kMostSampled, settings.seed);
-  FixedPointMatrix sampled(sample.size(), columns, kMaxDistance);
-  trace(sample, [&](std::size_t first, std::size_t n, const float* buffer) {
-    for (std::size_t i = 0; i < n; ++i) sampled.setRow(first + i, buffer + i * rows.size());
+  std::optional<RowStore> sampled(std::in_place, sample.size(), columns, sideBytes, place(BakeRecord::sampledRows, sampleInMemory));
+  trace(sample, *sampled, [&](const float* buffer, std::size_t n, std::int16_t* packed) {
+    for (std::size_t i = 0; i < n; ++i) toFixedPoint(buffer + i * rows.size(), columns, kMaxDistance, packed + i * columns);
   });
 
   auto compressionStart = Clock::now();
   const auto weight = columnWeights(rows, joint);
-  const int functions = automatic(settings.functions, count, 160, 32, 320);
-  const auto pca = computePca(sampled, weight, {.terms = functions, .iterations = 2, .seed = settings.seed, .threads = settings.threads},
-                              stage("shared functions"));
-  CoordinateStore coordinates(count, coordinateScales(pca, sample.size()));
-  for (std::size_t i = 0; i < sample.size(); ++i) coordinates.set(sample[i], pca.weights.data() + i * static_cast<std::size_t>(pca.terms));
-  sampled = {};
+  Pca pca;
+  {
+    constexpr auto kKind = static_cast<std::uint32_t>(BakeRecord::sharedFunctions);
+    std::vector<std::byte> record;
+    if (task.journal == nullptr || !task.journal->read(kKind, 0, record) || !unpackPca(record, sample.size(), columns, pca)) {
+      pca = computePca(*sampled, kMaxDistance, weight, pcaSettings, task.stage("shared functions"));
+      if (task.journal != nullptr) task.journal->append(kKind, 0, packPca(pca));
+    }
+  }
+  sampled.reset();
+  const auto terms = static_cast<std::size_t>(pca.terms);
+  const auto scale = coordinateScales(pca, sample.size());
   report.seconds.compression = secondsSince(compressionStart);
 
   std::vector<std::uint32_t> rest;
+  rest.reserve(count - sample.size());
   for (std::size_t v = 0, s = 0; v < count; ++v) {
     if (s < sample.size() && sample[s] == v) ++s;
     else rest.push_back(static_cast<std::uint32_t>(v));
   }
-  const Projection projection(pca, weight);
-  trace(rest, [&](std::size_t first, std::size_t n, const float* buffer) {
-    const RowMatrix projected = projection(buffer, n, rows.size());
-    for (std::size_t i = 0; i < n; ++i) coordinates.set(rest[first + i], projected.row(static_cast<Eigen::Index>(i)).data());
-  });
+  std::optional<RowStore> restCoordinates(std::in_place, rest.size(), terms, sideBytes, place(BakeRecord::coordinates, coordinatesInMemory));
+  CoordinateStore coordinates(sample, *restCoordinates, scale);
+  for (std::size_t i = 0; i < sample.size(); ++i) coordinates.set(sample[i], pca.weights.data() + i * terms);
+  pca.weights = {};
+  {
+    const Projection projection(pca, weight);
+    trace(rest, *restCoordinates, [&](const float* buffer, std::size_t n, std::int16_t* packed) {
+      const RowMatrix projected = projection(buffer, n, rows.size());
+      for (std::size_t i = 0; i < n; ++i) scale.pack(projected.row(static_cast<Eigen::Index>(i)).data(), packed + i * terms);
+    });
+  }
   report.raysTraced = tally.rays;
   const double all = std::max(tally.visibilitySeconds + tally.ssdfSeconds + tally.filterSeconds, 1e-9);
   report.seconds.visibility = traceWall * (tally.visibilitySeconds + tally.filterSeconds) / all;
@@ -208,18 +274,16 @@ void bakeClustered(const RayScene& rays, const std::vector<Viewpoint>& viewpoint
   compressionStart = Clock::now();
   std::vector<std::size_t> primitiveVertices;
   for (const auto& p : baked.scene.primitives) primitiveVertices.push_back(p.positions.size());
-  const ClusterSettings clusterSettings{.clusters = automatic(settings.clusters, count, 80, 1, 1024),
-                                        .terms = settings.terms,
-                                        .seed = settings.seed,
-                                        .threads = settings.threads};
-  const auto clusters = clusterRows(coordinates.read(chosen(count, kMostTraining, settings.seed + 1)), clusterSettings, stage("clusters"));
+  const auto clusters = clusterRows(coordinates.read(chosen(count, kMostTraining, settings.seed + 1)), clusterSettings, task.stage("clusters"));
   encodeClusters(pca, clusters, coordinates, primitiveVertices, encodingOf(settings), transfer);
+  coordinates = {};
+  restCoordinates.reset();
   report.seconds.compression += secondsSince(compressionStart);
   if (joint) decodeFractions(transfer);
 
   report.terms = transfer.terms;
   report.bytesPerVertex = transfer.bytesPerVertex(count);
-  report.error = measureClusteredError(rays, viewpoints, rows, transfer, settings, stage("error"));
+  report.error = measureClusteredError(task.rays, viewpoints, rows, transfer, settings, task.stage("error"));
 }
 
 }  // namespace chiaro

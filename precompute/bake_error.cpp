@@ -20,7 +20,6 @@ constexpr std::array kSharpness{10, 30, 100, 300, 1000, 3000};
 constexpr std::size_t kSampledVertices = 256;
 constexpr std::size_t kAxes = 16;
 constexpr std::uint32_t kRays = 256;
-constexpr std::size_t kRowBlock = 128;
 constexpr std::size_t kStepsPerSample = 64;  // a sampled vertex takes about as long as that many others
 
 using RowMatrix = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -49,9 +48,11 @@ SignalError signalError(const TracedSignal& traced, const Transfer& transfer, in
   const Eigen::Map<const RowMatrix> functions(transfer.eigenfunctions.data(), terms, texels);
   const Eigen::Map<const Eigen::RowVectorXf> mean(transfer.mean.data(), texels);
 
-  std::vector<SignalError> parts((ssdf.rows + kRowBlock - 1) / kRowBlock);
+  std::vector<SignalError> parts(ssdf.blocks());
   parallelBlocks(threads, parts.size(), [&](std::size_t block) {
-    const auto first = block * kRowBlock, count = std::min(kRowBlock, ssdf.rows - first);
+    const auto first = block * RowBlocks::kRows, count = ssdf.rowsOf(block);
+    std::vector<std::byte> room;
+    const auto* truths = ssdf.block(block, room);
     RowMatrix weights(static_cast<Eigen::Index>(count), terms);
     for (std::size_t i = 0; i < count; ++i) {
       const auto* stored = weightsOf(transfer, first + i);
@@ -63,12 +64,12 @@ SignalError signalError(const TracedSignal& traced, const Transfer& transfer, in
     stored.rowwise() += mean;
     for (std::size_t i = 0; i < count; ++i) {
       const auto& viewpoint = (*traced.viewpoints)[first + i];
-      const auto* truth = ssdf.row(first + i);
+      const auto* truth = truths + i * grid.texelCount;
       for (std::size_t t = 0; t < grid.texelCount; ++t) {
         const double solidAngle = static_cast<double>(grid.solidAngle[t]);
         const auto texel = grid.rowMajor[t];
         const float value = stored(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(texel));
-        const float expected = static_cast<float>(truth[texel]) * ssdf.step();
+        const float expected = static_cast<float>(truth[texel]) * traced.step;
         parts[block].squared += solidAngle * static_cast<double>((value - expected) * (value - expected));
         parts[block].solidAngle += solidAngle;
         if (!viewpoint.doubleSided && !(glm::dot(grid.direction(t), viewpoint.normal) > 0.0f)) continue;
@@ -136,8 +137,11 @@ FractionError fractionError(const TracedSignal& traced, const Transfer& transfer
   parallelBlocks(settings.threads, vertices.size(), [&](std::size_t i) {
     const auto& viewpoint = (*traced.viewpoints)[vertices[i]];
     std::vector<float> exact(grid.texelCount), stored(grid.texelCount);
-    for (std::size_t t = 0; t < grid.texelCount; ++t)
-      exact[t] = static_cast<float>(traced.ssdf->row(vertices[i])[t]) * traced.ssdf->step();
+    {
+      std::vector<std::byte> room;
+      const auto* row = traced.ssdf->block(vertices[i] / RowBlocks::kRows, room) + vertices[i] % RowBlocks::kRows * grid.texelCount;
+      for (std::size_t t = 0; t < grid.texelCount; ++t) exact[t] = static_cast<float>(row[t]) * traced.step;
+    }
     decodeSsdf(transfer, weightsOf(transfer, vertices[i]), stored.data());
     std::mt19937 random(settings.seed ^ static_cast<std::uint32_t>(vertices[i]));
     for (std::size_t a = 0; a < kAxes; ++a) {

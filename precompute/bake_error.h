@@ -17,7 +17,8 @@ struct TracedSignal {
   const OctahedralGrid* grid = nullptr;
   const RayScene* rays = nullptr;
   const std::vector<Viewpoint>* viewpoints = nullptr;
-  const FixedPointMatrix* ssdf = nullptr;  ///< #vertices by #texels, row-major texels
+  const RowBlocks* ssdf = nullptr;  ///< #vertices by #texels, row-major texels
+  float step = 0.0f;                ///< radians of one of its units
 };
 
 /// The figures of BakeReport::error. progress: share done in [0, 1], one thread at a time.

@@ -1,35 +1,65 @@
 #include "precompute/compression/coordinates.h"
 
 #include <algorithm>
+#include <numeric>
+#include <stdexcept>
 #include <utility>
 
 namespace chiaro {
 
-CoordinateStore::CoordinateStore(std::size_t rows, std::vector<float> scale)
-    : rows_(rows), scale_(std::move(scale)), values_(rows * scale_.size()) {}
-
-void CoordinateStore::set(std::size_t row, const float* values) {
-  auto* to = values_.data() + row * columns();
+void CoordinateScale::pack(const float* values, std::int16_t* out) const {
   for (std::size_t d = 0; d < columns(); ++d) {
-    const float scaled = std::clamp(values[d] / scale_[d] * 32767.0f, -32767.0f, 32767.0f);
-    to[d] = static_cast<std::int16_t>(scaled + (scaled < 0.0f ? -0.5f : 0.5f));
+    const float scaled = std::clamp(values[d] / most[d] * 32767.0f, -32767.0f, 32767.0f);
+    out[d] = static_cast<std::int16_t>(scaled + (scaled < 0.0f ? -0.5f : 0.5f));
   }
 }
 
-void CoordinateStore::get(std::size_t row, float* values) const {
-  const auto* from = values_.data() + row * columns();
-  for (std::size_t d = 0; d < columns(); ++d) values[d] = static_cast<float>(from[d]) * (scale_[d] / 32767.0f);
+void CoordinateScale::unpack(const std::int16_t* packed, float* values) const {
+  for (std::size_t d = 0; d < columns(); ++d) values[d] = static_cast<float>(packed[d]) * (most[d] / 32767.0f);
+}
+
+CoordinateStore::CoordinateStore(std::size_t rows, std::vector<float> scale)
+    : rows_(rows), scale_{std::move(scale)}, values_(rows * scale_.columns()) {}
+
+CoordinateStore::CoordinateStore(std::vector<std::uint32_t> held, const RowBlocks& rest, CoordinateScale scale)
+    : rows_(held.size() + rest.rows()), scale_(std::move(scale)), held_(std::move(held)), rest_(&rest), values_(held_.size() * scale_.columns()) {
+  if (rest.columns() != scale_.columns()) throw std::invalid_argument("CoordinateStore: rows of another length");
+}
+
+void CoordinateStore::set(std::size_t row, const float* values) {
+  const auto place = rest_ == nullptr ? row : static_cast<std::size_t>(std::lower_bound(held_.begin(), held_.end(), row) - held_.begin());
+  scale_.pack(values, values_.data() + place * columns());
 }
 
 Coordinates CoordinateStore::read(std::size_t first, std::size_t count) const {
-  Coordinates result{.rows = count, .columns = columns(), .values = std::vector<float>(count * columns())};
-  for (std::size_t i = 0; i < count; ++i) get(first + i, result.values.data() + i * columns());
-  return result;
+  std::vector<std::uint32_t> rows(count);
+  std::iota(rows.begin(), rows.end(), static_cast<std::uint32_t>(first));
+  return read(rows);
 }
 
-Coordinates CoordinateStore::read(const std::vector<std::uint32_t>& rows) const {
+Coordinates CoordinateStore::read(std::span<const std::uint32_t> rows) const {
   Coordinates result{.rows = rows.size(), .columns = columns(), .values = std::vector<float>(rows.size() * columns())};
-  for (std::size_t i = 0; i < rows.size(); ++i) get(rows[i], result.values.data() + i * columns());
+  std::vector<std::byte> room;
+  const std::int16_t* block = nullptr;
+  std::size_t current = 0;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const std::size_t row = rows[i];
+    const std::int16_t* packed = nullptr;
+    if (rest_ == nullptr) {
+      packed = values_.data() + row * columns();
+    } else {
+      const auto above = std::lower_bound(held_.begin(), held_.end(), row);
+      const auto before = static_cast<std::size_t>(above - held_.begin());
+      if (above != held_.end() && *above == row) {
+        packed = values_.data() + before * columns();
+      } else {
+        const auto place = row - before, wanted = place / RowBlocks::kRows;
+        if (block == nullptr || wanted != current) block = rest_->block(current = wanted, room);
+        packed = block + place % RowBlocks::kRows * columns();
+      }
+    }
+    scale_.unpack(packed, result.values.data() + i * columns());
+  }
   return result;
 }
 

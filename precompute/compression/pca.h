@@ -6,7 +6,12 @@
 #include <functional>
 #include <vector>
 
+#include "precompute/compression/row_blocks.h"
+
 namespace chiaro {
+
+/// Rounds `count` values in [-range, range] (others are clamped) to 16-bit fixed point: value = range * q / 32767.
+void toFixedPoint(const float* values, std::size_t count, float range, std::int16_t* out);
 
 /// #rows by #columns, row-major, values in [-range, range] held as 16-bit fixed point.
 struct FixedPointMatrix {
@@ -47,8 +52,15 @@ struct Pca {
 };
 
 /// Randomised subspace iteration (Halko, Martinsson and Tropp 2011, algorithm 4.4 on the covariance) and a Rayleigh-Ritz step.
-/// columnWeight: #columns, > 0. progress: share done in [0, 1], one thread at a time.
+/// Goes over the rows 3 + iterations times, a strip of at most 64 MiB (and at least a block) after the other, so they may be far larger
+/// than memory. rows: 16-bit fixed point in [-range, range]. columnWeight: #columns, > 0. progress: share done in [0, 1], one thread at
+/// a time.
+Pca computePca(const RowBlocks& rows, float range, const std::vector<float>& columnWeight, const PcaSettings& settings,
+               const std::function<void(double)>& progress = {});
 Pca computePca(const FixedPointMatrix& matrix, const std::vector<float>& columnWeight, const PcaSettings& settings,
                const std::function<void(double)>& progress = {});
+
+/// Bytes that computePca() needs at most beside the rows, its result included.
+std::size_t pcaMemory(std::size_t rows, std::size_t columns, const PcaSettings& settings);
 
 }  // namespace chiaro

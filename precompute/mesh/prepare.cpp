@@ -48,9 +48,10 @@ bool tooFarFromTheOrigin(const Scene& scene) {
 
 }  // namespace
 
-Scene prepareScene(const Scene& scene, float creaseAngle, RepairReport& report) {
+Scene prepareScene(Scene scene, float creaseAngle, RepairReport& report) {
   report = {};
-  Scene result = scene;
+  const bool tooFar = tooFarFromTheOrigin(scene);
+  Scene result = std::move(scene);
   for (auto& primitive : result.primitives) {
     const auto& material = materialOf(result, primitive);
     if (!needsTangents(material, primitive)) primitive.tangents.clear();  // they must not keep equal vertices apart
@@ -66,7 +67,7 @@ Scene prepareScene(const Scene& scene, float creaseAngle, RepairReport& report) 
     makeTangents(primitive, material, report);
   }
   std::erase_if(result.primitives, [](const Primitive& primitive) { return primitive.indices.empty(); });
-  if (result.primitives.empty() && tooFarFromTheOrigin(scene))
+  if (result.primitives.empty() && tooFar)
     throw inputError("scene", "stands too far from the origin for coordinates in single precision, and falls together",
                      "move it to the origin");
   return result;

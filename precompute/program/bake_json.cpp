@@ -1,7 +1,5 @@
 #include "precompute/program/bake_json.h"
 
-#include <sys/resource.h>
-
 #include <nlohmann/json.hpp>
 #include <numbers>
 
@@ -35,6 +33,7 @@ std::string bakeJson(const BakeRun& run, const BakeReport& report) {
       {"resolution", run.settings.resolution},
       {"terms", report.terms},
       {"rays_traced", report.raysTraced},
+      {"vertices_resumed", report.verticesResumed},
       {"bytes_per_vertex", report.bytesPerVertex},
       {"peak_memory_bytes", run.peakMemoryBytes},
       {"seconds",
@@ -82,17 +81,12 @@ std::string bakeJson(const BakeRun& run, const BakeReport& report) {
         {"refine", run.settings.refine.error},
         {"refine_vertices", run.settings.refine.mostVertices},
         {"seed", run.settings.seed},
-        {"threads", run.settings.threads}}},
+        {"threads", run.settings.threads},
+        {"memory_limit_mib", run.memoryLimitMib}}},
       {"warnings", run.warnings},
   };
   // Names from a file system need not be UTF-8; the document must be.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
-}
-
-std::size_t peakMemoryBytes() {
-  struct rusage usage {};
-  ::getrusage(RUSAGE_SELF, &usage);
-  return static_cast<std::size_t>(usage.ru_maxrss) * 1024;
 }
 
 }  // namespace chiaro

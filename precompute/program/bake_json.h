@@ -16,11 +16,9 @@ struct BakeRun {
   double loadSeconds = 0.0;
   double writeSeconds = 0.0;
   std::vector<std::string> warnings{};
+  double memoryLimitMib = 0.0;  ///< 0: none
 };
 
 std::string bakeJson(const BakeRun& run, const BakeReport& report);
-
-/// The largest resident size of this process so far.
-std::size_t peakMemoryBytes();
 
 }  // namespace chiaro

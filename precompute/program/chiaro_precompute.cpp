@@ -17,6 +17,7 @@
 #include "assets/transfer/transfer.h"
 #include "assets/transfer/transfer_format.h"
 #include "precompute/bake.h"
+#include "precompute/memory_budget.h"
 #include "precompute/program/bake_json.h"
 
 namespace {
@@ -31,11 +32,14 @@ constexpr const char* kExamples = R"(Examples:
   chiaro-precompute room.gltf -o room.glb --resolution 128 --threads 8
   chiaro-precompute room.gltf -o room.glb --refine 0.05
       more triangles where walls and floors have too few for their shadows
+  chiaro-precompute statue.ply -o statue.glb --memory-limit 1024
+      a million vertices in a gigabyte; stopped or killed, the same command goes on where it was
   chiaro-view baked.glb
       shows the result
 
 Scenes: .gltf, .glb, .obj, .ply, .off, .stl, or builtin:NAME.
-Exit codes: 0 done, 1 failed, 2 wrong usage, 3 unreadable input, 4 unwritable output, 130 interrupted (nothing is written).)";
+Exit codes: 0 done, 1 failed, 2 wrong usage, 3 unreadable input, 4 unwritable output, 130 interrupted (the output is not
+written; the same command goes on from FILE.glb.partial).)";
 
 struct Options {
   std::string scene;
@@ -43,6 +47,8 @@ struct Options {
   std::filesystem::path json;
   BakeSettings settings;
   double creaseAngleDegrees = 60.0;
+  double memoryLimitMib = 0.0;
+  bool fresh = false;
   bool quiet = false;
   bool verbose = false;
 };
@@ -78,6 +84,10 @@ void declare(CLI::App& app, Options& options) {
   shown(app.add_option("--refine-vertices", settings.refine.mostVertices, "Most vertices the scene may have after --refine"), "N");
   shown(app.add_option("--seed", settings.seed, "Of the random choices; the same seed gives the same file"), "N");
   shown(app.add_option("--threads", settings.threads, "CPU threads, 0 is all; never changes the result"), "N");
+  shown(app.add_option("--memory-limit", options.memoryLimitMib,
+                       "MiB of memory to stay within, 0 is no limit; the rest is kept on disk, in FILE.partial; never changes the result"),
+        "MIB");
+  app.add_flag("--fresh", options.fresh, "Do not go on from what a bake of the same output left when it was stopped");
   auto* quiet = app.add_flag("-q,--quiet", options.quiet, "Print nothing but errors");
   app.add_flag("-v,--verbose", options.verbose, "Print warnings and every figure")->excludes(quiet);
 }
@@ -87,6 +97,12 @@ bool isBaked(const std::filesystem::path& path) {
   const auto bytes = readFile(path);
   const std::string_view mark = kTransferExtension;
   return std::search(bytes.begin(), bytes.end(), mark.begin(), mark.end()) != bytes.end();
+}
+
+/// What is finished of a bake that is not over lies beside its output.
+std::filesystem::path partialOf(const std::filesystem::path& output) {
+  auto path = output;
+  return path += ".partial";
 }
 
 void finish(Options& options) {
@@ -104,6 +120,7 @@ void finish(Options& options) {
   inRange("--refine", static_cast<double>(settings.refine.error), 0, 1);
   inRange("--refine-vertices", static_cast<double>(settings.refine.mostVertices), 0, 1e9);
   inRange("--threads", settings.threads, 0, 1024);
+  inRange("--memory-limit", options.memoryLimitMib, 0, 1e9);
   if (settings.resolution % 4 != 0) throw usageError("--resolution", "is not a multiple of 4", "use 32, 64, 128, ...");
   if (settings.directionCount % 4 != 0) throw usageError("--directions", "is not a multiple of 4", "use 16, 32, 64, ...");
   settings = resolvedSettings(settings);
@@ -112,11 +129,14 @@ void finish(Options& options) {
   if (options.output.extension() != ".glb")
     throw usageError("--output", "\"" + options.output.string() + "\" does not end in .glb", "name it so: it is a binary glTF");
   if (isSameFile(options.json, options.output)) throw usageError("--json", "names the same file as --output", "give two names");
+  if (isSameFile(options.json, partialOf(options.output)))
+    throw usageError("--json", "names the file of what is finished so far", "give another name");
   const auto lost = [](const char* option) { return usageError(option, "names the scene itself, which would be lost", "give another name"); };
   if (isSameFile(options.json, options.scene)) throw lost("--json");
   if (isSameFile(options.output, options.scene) && !isBaked(options.scene)) throw lost("--output");
   // An hour's work should not be lost to a typing mistake.
   requireWritable(options.output);
+  requireWritable(partialOf(options.output));
   if (!options.json.empty()) requireWritable(options.json);
 }
 
@@ -169,6 +189,14 @@ void printSummary(const Options& options, const BakeRun& run, const BakeReport& 
   }
 }
 
+/// A bake that goes on must be the same program's: its version, and its very bytes where the system shows them.
+std::string identity() {
+  std::string text = "chiaro-precompute " CHIARO_VERSION;
+  std::error_code error;
+  if (std::filesystem::exists("/proc/self/exe", error)) text += " " + checksumOf(readFile("/proc/self/exe"));
+  return text;
+}
+
 /// bake() knows no file names; the user knows nothing else.
 template <typename Work>
 auto naming(const std::string& file, const Work& work) {
@@ -198,9 +226,9 @@ ExitCode precompute(int argc, char** argv) {
   catchInterrupts();
 
   ProgressBar bar(progressStyle(options.quiet));
-  BakeRun run{.input = options.scene, .output = options.output.string(), .version = CHIARO_VERSION, .settings = options.settings};
+  BakeRun run{.input = options.scene, .output = options.output.string(), .version = CHIARO_VERSION, .settings = options.settings, .memoryLimitMib = options.memoryLimitMib};
   const auto loadStart = std::chrono::steady_clock::now();
-  const auto scene = isBuiltinName(options.scene) ? builtinScene(options.scene.substr(options.scene.find(':') + 1))
+  auto scene = isBuiltinName(options.scene) ? builtinScene(options.scene.substr(options.scene.find(':') + 1))
                                                   : loadScene(options.scene, [&](const std::string& warning) {
                                                       run.warnings.push_back(warning);
                                                       if (options.verbose) std::fprintf(stderr, "warning: %s\n", warning.c_str());
@@ -210,19 +238,37 @@ ExitCode precompute(int argc, char** argv) {
 
   bar.setItems(scene.vertexCount(), "vertices");
   BakeReport report;
+  const BakeStorage storage{.journal = partialOf(options.output),
+                            .fresh = options.fresh,
+                            .program = identity(),
+                            .memoryLimit = static_cast<std::size_t>(options.memoryLimitMib * 1048576.0),
+                            .notice = [&](const std::string& line) {
+                              bar.clear();
+                              if (!options.quiet) std::fprintf(stderr, "chiaro-precompute: %s\n", line.c_str());
+                            }};
   const auto baked = naming(options.scene, [&] {
-    return bake(scene, options.settings, report, [&](const std::string& stage, double done) {
-      throwIfInterrupted();
-      bar.update(stage, done);
-    });
+    try {
+      return bake(std::move(scene), options.settings, report,
+                  [&](const std::string& stage, double done) {
+                    throwIfInterrupted();
+                    bar.update(stage, done);
+                  },
+                  storage);
+    } catch (const Error& error) {
+      if (error.code() != ExitCode::interrupted || !std::filesystem::exists(storage.journal)) throw;
+      throw Error(ExitCode::interrupted, "interrupted", "the output is not written, what is finished is in " + storage.journal.string(),
+                  "run the same command again to go on, or remove that file");
+    }
   });
   bar.clear();
 
   const auto writeStart = std::chrono::steady_clock::now();
   throwIfInterrupted();
   writeBakedScene(options.output, baked, "chiaro-precompute " CHIARO_VERSION);
+  std::error_code ignored;
+  std::filesystem::remove(storage.journal, ignored);
   run.writeSeconds = secondsSince(writeStart);
-  run.peakMemoryBytes = peakMemoryBytes();
+  run.peakMemoryBytes = peakResidentBytes();
   if (!options.json.empty()) writeFileAtomically(options.json, bakeJson(run, report));
   if (!options.quiet) printSummary(options, run, report);
   return ExitCode::done;

@@ -25,8 +25,8 @@ namespace {
 const std::vector<std::string> kFast{"--resolution", "16", "--terms", "8", "--directions", "8"};
 
 /// A table on a floor, as an OBJ without normals: about 300 vertices.
-std::string writeTable() {
-  std::ofstream file("table.obj");
+std::string writeTable(const char* name = "table.obj", int floorCells = 12) {
+  std::ofstream file(name);
   int count = 0;
   const auto grid = [&](double x0, double y, double z0, double size, int cells) {
     for (int j = 0; j <= cells; ++j)
@@ -38,9 +38,9 @@ std::string writeTable() {
       }
     count += (cells + 1) * (cells + 1);
   };
-  grid(-2, 0, 2, 4, 12);
+  grid(-2, 0, 2, 4, floorCells);
   grid(-0.6, 0.8, 0.6, 1.2, 8);
-  return "table.obj";
+  return name;
 }
 
 Finished precompute(std::vector<std::string> arguments) { return runProgram("chiaro-precompute", arguments); }
@@ -65,7 +65,7 @@ TEST(Precompute, HelpAndVersionGoToStandardOutput) {
   EXPECT_EQ(help.code, 0);
   EXPECT_TRUE(help.err.empty()) << help.err;
   for (const char* word : {"--output", "--resolution", "--terms", "--directions", "--crease-angle-deg", "--seed", "--threads", "--json", "--quiet",
-                           "--verbose", "Examples:", "Exit codes:", "builtin:"})
+                           "--verbose", "--memory-limit", "--fresh", "Examples:", "Exit codes:", "builtin:"})
     EXPECT_NE(help.out.find(word), std::string::npos) << word;
   const auto version = precompute({"--version"});
   EXPECT_EQ(version.code, 0);
@@ -81,9 +81,11 @@ TEST(Precompute, WrongUsageIsOneLineAndTwo) {
       {{"--directions", "9"}, "--directions"},  {{"--directions", "4"}, "--directions"},   {{"--crease-angle-deg", "nan"}, "--crease-angle-deg"},
       {{"--crease-angle-deg", "-1"}, "--crease-angle-deg"}, {{"--threads", "-2"}, "--threads"}, {{"--refine", "1.5"}, "--refine"},
       {{"--refine", "-0.1"}, "--refine"}, {{"--refine", "nan"}, "--refine"}, {{"--refine-vertices", "-1"}, "--refine-vertices"}, {{"--frobnicate"}, "--frobnicate"},
-      {{"--quiet", "--verbose"}, "verbose"},    {{"--json", "out.glb"}, "--json"}, {{"--json", "./out.glb"}, "--json"}};
+      {{"--quiet", "--verbose"}, "verbose"},    {{"--json", "out.glb"}, "--json"}, {{"--json", "./out.glb"}, "--json"},
+      {{"--json", "out.glb.partial"}, "--json"}, {{"--memory-limit", "-1"}, "--memory-limit"}, {{"--memory-limit", "10"}, "--memory-limit: 10 MiB are too few"}};
   for (const auto& [options, about] : cases) {
     std::vector<std::string> arguments{"builtin:sphere", "-o", "out.glb"};
+    EXPECT_FALSE(std::filesystem::exists("out.glb.partial"));
     arguments.insert(arguments.end(), options.begin(), options.end());
     expectOneLine(precompute(arguments), ExitCode::usage, about);
   }
@@ -214,15 +216,23 @@ TEST(Precompute, BakesItsOwnOutputAgain) {
   EXPECT_EQ(before.transfer.primitives[0].visibility, after.transfer.primitives[0].visibility);
 }
 
-/// Starts a bake of the table that takes some tenths of a second.
-pid_t startBake(const std::string& output) {
+pid_t start(std::vector<std::string> arguments) {
   const std::string program = std::string(std::getenv("CHIARO_BIN_DIR")) + "/chiaro-precompute";
+  arguments.insert(arguments.begin(), program);
+  std::vector<char*> pointers;
+  for (auto& argument : arguments) pointers.push_back(argument.data());
+  pointers.push_back(nullptr);
   const pid_t child = ::fork();
   if (child == 0) {
-    ::execl(program.c_str(), program.c_str(), "table.obj", "-o", output.c_str(), "-q", "--resolution", "32", "--terms", "16", nullptr);
+    ::execv(program.c_str(), pointers.data());
     ::_exit(127);
   }
   return child;
+}
+
+/// Starts a bake of the table that takes some tenths of a second.
+pid_t startBake(const std::string& output) {
+  return start({"table.obj", "-o", output, "-q", "--resolution", "32", "--terms", "16", "--fresh"});
 }
 
 int waitFor(pid_t child) {
@@ -241,22 +251,95 @@ int leftovers(const std::string& prefix) {
   return count;
 }
 
-TEST(Precompute, AnInterruptLeavesNothingAndSays130) {
+TEST(Precompute, AnInterruptLeavesNoOutputAndSays130) {
   writeTable();
   for (const int signal : {SIGINT, SIGTERM}) {
     // A bake that cannot be over before the signal comes.
-    const std::string program = std::string(std::getenv("CHIARO_BIN_DIR")) + "/chiaro-precompute";
-    const pid_t child = ::fork();
-    if (child == 0) {
-      ::execl(program.c_str(), program.c_str(), "table.obj", "-o", "stopped.glb", "-q", "--resolution", "256", "--terms", "256", "--threads", "1", nullptr);
-      ::_exit(127);
-    }
+    const pid_t child = start({"table.obj", "-o", "stopped.glb", "-q", "--resolution", "256", "--terms", "256", "--threads", "1", "--fresh"});
     std::this_thread::sleep_for(std::chrono::milliseconds(300));
     ASSERT_EQ(::kill(child, signal), 0);
     EXPECT_EQ(waitFor(child), 130);
     EXPECT_FALSE(std::filesystem::exists("stopped.glb"));
-    EXPECT_EQ(leftovers("stopped.glb"), 0);
+    const bool partial = std::filesystem::remove("stopped.glb.partial");
+    EXPECT_EQ(leftovers("stopped.glb"), 0) << (partial ? "beside what is finished" : "");
   }
+}
+
+/// A bake of a second or two whose vertices are more than its sample.
+std::vector<std::string> longBake(const std::string& output, const std::string& threads) {
+  return {"long.obj", "-o", output, "-q", "--resolution", "16", "--sample-resolution", "32", "--terms", "8", "--clusters", "8", "--functions", "32",
+          "--directions", "8", "--threads", threads, "--json", output + ".json"};
+}
+
+std::size_t resumed(const std::string& output) {
+  std::ifstream file(output + ".json");
+  return nlohmann::json::parse(file).at("vertices_resumed");
+}
+
+TEST(Precompute, KilledTwentyTimesItGoesOnToTheSameBytes) {
+  writeTable("long.obj", 96);
+  ASSERT_EQ(waitFor(start(longBake("one.glb", "1"))), 0);
+  EXPECT_EQ(resumed("one.glb"), 0u);
+  const auto begin = std::chrono::steady_clock::now();
+  ASSERT_EQ(waitFor(start(longBake("three.glb", "3"))), 0);
+  const auto whole = std::chrono::steady_clock::now() - begin;
+  const auto expected = readFile("one.glb");
+  EXPECT_TRUE(readFile("three.glb") == expected);
+  EXPECT_EQ(leftovers("three.glb"), 1) << "the JSON, and no .partial";
+
+  for (const char* name : {"killed.glb", "killed.glb.partial"}) std::filesystem::remove(name);
+  std::mt19937 random(7);
+  int kills = 0, done = 0;
+  for (int round = 0; round < 200 && kills < 20; ++round) {
+    const pid_t child = start(longBake("killed.glb", round % 2 == 0 ? "3" : "1"));
+    std::this_thread::sleep_for(std::chrono::duration_cast<std::chrono::microseconds>(whole * (0.4 * static_cast<double>(random()) * 0x1p-32)));
+    ::kill(child, SIGKILL);
+    const bool killed = waitFor(child) == 128 + SIGKILL;
+    kills += killed;
+    if (killed) {
+      EXPECT_EQ(std::filesystem::exists("killed.glb"), done > 0);
+      continue;
+    }
+    ++done;
+    EXPECT_TRUE(readFile("killed.glb") == expected) << "after " << kills << " kills";
+  }
+  EXPECT_EQ(kills, 20);
+  ASSERT_EQ(waitFor(start(longBake("killed.glb", "2"))), 0);
+  EXPECT_TRUE(readFile("killed.glb") == expected);
+  EXPECT_FALSE(std::filesystem::exists("killed.glb.partial"));
+}
+
+TEST(Precompute, SaysThatItGoesOnAndWhyItStartsAnew) {
+  writeTable("long.obj", 96);
+  // Stopped while it traces, not before anything is finished: the notice of a later bake tells.
+  const auto stop = [&](const std::vector<std::string>& arguments) {
+    std::filesystem::remove("told.glb.partial");
+    const pid_t child = start(arguments);
+    for (int i = 0; i < 1000 && !(std::filesystem::exists("told.glb.partial") && std::filesystem::file_size("told.glb.partial") > 100000); ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    ::kill(child, SIGINT);
+    EXPECT_EQ(waitFor(child), 130);
+    EXPECT_TRUE(std::filesystem::exists("told.glb.partial"));
+  };
+  auto loud = longBake("told.glb", "2");
+  loud.erase(std::find(loud.begin(), loud.end(), "-q"));
+  stop(loud);
+  auto finished = precompute(loud);
+  EXPECT_EQ(finished.code, 0);
+  EXPECT_NE(finished.err.find("chiaro-precompute: told.glb.partial: goes on from what an earlier bake has finished\n"), std::string::npos) << finished.err;
+  EXPECT_GT(resumed("told.glb"), 0u);
+  stop(loud);
+  auto other = loud;
+  other.insert(other.end(), {"--seed", "5"});
+  finished = precompute(other);
+  EXPECT_EQ(finished.code, 0);
+  EXPECT_NE(finished.err.find("other settings"), std::string::npos) << finished.err;
+  EXPECT_EQ(resumed("told.glb"), 0u);
+  std::ofstream("told.glb.partial") << "somebody's notes";
+  finished = precompute(longBake("told.glb", "2"));
+  expectOneLine(finished, ExitCode::unwritableOutput, "told.glb.partial: is there already");
+  EXPECT_EQ(std::filesystem::file_size("told.glb.partial"), 16u);
+  std::filesystem::remove("told.glb.partial");
 }
 
 TEST(Precompute, KilledAtAnyMomentTheOutputIsOldOrNew) {
