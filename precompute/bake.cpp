@@ -42,6 +42,9 @@ void requireValid(const BakeSettings& settings) {
   if (settings.weightBits != 8 && settings.weightBits != 16) throw usageError("weight bits", "are neither 8 nor 16", "use 8");
   if (settings.wideTerms < 0 || settings.wideTerms > 256) throw usageError("wide terms", "must lie between 0 and 256", "use 1");
   if (!std::isfinite(settings.bytesPerVertex)) throw usageError("bytes a vertex", "are not a number", "use 104");
+  if (!(settings.targetError >= 0.0 && settings.targetError < 1.0)) throw usageError("target error", "must lie between 0 and 1", "use 0.02");
+  if (settings.targetError > 0.0 && (settings.bytesPerVertex != 0.0 || settings.functions != 0 || settings.clusters != 0))
+    throw usageError("target error", "chooses bytes, functions and clusters, and one of these is given too", "give one or the other");
   const int bits = settings.functionBits;
   if (bits != 0 && bits != 4 && bits != 8 && bits != 16) throw usageError("function bits", "are none of 0, 4, 8 and 16", "use 0");
 }
@@ -77,6 +80,7 @@ TransferFacts factsOf(const BakeSettings& settings, const BakeReport& report) {
     facts["settings.function_bits"] = settings.functionBits;
     facts["settings.wide_terms"] = settings.wideTerms;
     facts["settings.bytes_per_vertex"] = settings.bytesPerVertex;
+    facts["settings.target_error"] = settings.targetError;
   }
   for (const auto& [name, value] : report.error) facts["error." + name] = value;
   return facts;

@@ -32,9 +32,12 @@ struct BakeSettings {
   int weightBits = 8;               ///< clustered forms: 8 or 16
   int functionBits = 0;             ///< clustered forms: 16, 8, 4; 0: 8 or 4 by what each is worth
   int wideTerms = 1;                ///< clustered forms: a cluster's terms with weightBits and 8-bit components; 4 bits each behind them
-  /// clustered forms: bytes a vertex, all counted, that terms are dropped to fit; 0: 104, yet never less than 40 for the terms;
+  /// clustered forms: bytes a vertex, all counted, that terms are dropped to fit, within a hundredth; 0: 104, yet never less than 40 for the terms;
   /// negative: no limit
   double bytesPerVertex = 0.0;
+  /// clustered forms: as few bytes a vertex as keep the mean error of the visible fraction at or below this for lobes of every sharpness
+  /// measured (BakeReport::error); functions and clusters are chosen too. 0: off
+  double targetError = 0.0;
   int directionCount = 32;          ///< fixed broad lobes per vertex, a multiple of 4, 8..64
   float directionSharpness = 32.0f;
   float creaseAngle = 1.0471976f;   ///< radians; sharper edges are split where the file has no normals
@@ -64,6 +67,10 @@ struct BakeReport {
   std::uint64_t raysTraced = 0;     ///< with those of the earlier bake
   int terms = 0;
   double bytesPerVertex = 0.0;
+  bool missedTarget = false;  ///< even the most bytes leave a larger error than BakeSettings::targetError
+  /// clustered forms: as few bytes a vertex as keep the mean error of the visible fraction at or below this for lobes of every sharpness
+  /// measured (BakeReport::error); functions and clusters are chosen too. 0: off
+  double targetError = 0.0;
   struct { double visibility = 0, ssdf = 0, compression = 0, total = 0; } seconds;
   RepairReport repairs;
   RefineReport refinement;

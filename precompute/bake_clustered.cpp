@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <iterator>
+#include <limits>
 #include <mutex>
 #include <numbers>
 #include <numeric>
@@ -12,6 +14,7 @@
 
 #include "precompute/clustered_error.h"
 #include "precompute/compression/encode_clusters.h"
+#include "precompute/compression/model_size.h"
 #include "precompute/compression/product.h"
 #include "precompute/fraction_bytes.h"
 #include "precompute/journal/pca_record.h"
@@ -98,23 +101,38 @@ CoordinateScale coordinateScales(const Pca& pca, std::size_t sampled) {
   return {scale};
 }
 
-int automatic(int wanted, std::size_t vertices, std::size_t verticesEach, int least, int most) {
-  if (wanted > 0) return wanted;
-  return static_cast<int>(std::clamp(vertices / verticesEach, static_cast<std::size_t>(least), static_cast<std::size_t>(most)));
-}
-
-/// The paper's own: 48 weights of 16 bits, and its basis on some ten thousand vertices (Wang et al. 2009, section 6).
-constexpr double kBytesPerVertex = 104.0;
 constexpr double kLeastTermBytes = 40.0;  // where few vertices share the functions
 
-ClusterEncoding encodingOf(const BakeSettings& settings) {
-  const bool automatically = settings.bytesPerVertex == 0.0;
+/// One model of a bake: infinite bytes keep all terms.
+double mostBytes(const BakeSettings& settings) {
+  if (settings.targetError > 0.0) return std::numeric_limits<double>::infinity();
+  return settings.bytesPerVertex > 0.0 ? settings.bytesPerVertex : kUsualBytes;
+}
+
+ModelSize sizeOf(const BakeSettings& settings, double bytes, std::size_t vertices, std::size_t columns) {
+  auto automatic = modelSize(std::min(bytes, *std::rbegin(kByteRungs)), vertices, columns);
+  if (std::isinf(bytes)) automatic.functions = std::max(automatic.functions, static_cast<int>(std::min<std::size_t>(vertices, kMostNeeded)));
+  return {.functions = settings.functions > 0 ? settings.functions : automatic.functions,
+          .clusters = settings.clusters > 0 ? settings.clusters : automatic.clusters};
+}
+
+ClusterEncoding encodingOf(const BakeSettings& settings, double bytes) {
   return {.weightBits = settings.weightBits,
           .functionBits = settings.functionBits,
           .wideTerms = settings.wideTerms,
-          .bytesPerVertex = automatically ? kBytesPerVertex : std::max(settings.bytesPerVertex, 0.0),
-          .leastTermBytes = automatically ? kLeastTermBytes : 0.0,
+          .bytesPerVertex = settings.bytesPerVertex < 0.0 || std::isinf(bytes) ? 0.0 : bytes,
+          .leastTermBytes = settings.bytesPerVertex == 0.0 && settings.targetError == 0.0 ? kLeastTermBytes : 0.0,
           .threads = settings.threads};
+}
+
+double worstFraction(const std::vector<std::pair<std::string, double>>& error) {
+  double worst = 0.0;
+  for (const auto& [name, value] : error) {
+    if (!name.starts_with("visible_fraction_mean_abs_")) continue;
+    if (std::isnan(value)) return value;
+    worst = std::max(worst, value);
+  }
+  return worst;
 }
 
 /// What a bake needs beside what is there when tracing starts, stage by stage, with or without the large parts in memory.
@@ -133,7 +151,7 @@ struct Needs {
     const auto basis = 4 * functions * columns;
     const auto model = 4 * clusters * (terms + 1) * functions;
     const auto training = std::min(vertices, kMostTraining) * functions * 4;
-    const auto measured = 4 * std::min<std::size_t>(clusters, 256) * (terms + 1) * columns + 2 * 256 * rowColumns * 4;
+    const auto measured = 2 * 256 * rowColumns * 4;
     return always + std::max({sample + std::max(tracing, pcaMemory(sampled, columns, pca)),
                               coordinates + 2 * basis + tracing,
                               coordinates + basis + 2 * training + model,
@@ -161,18 +179,14 @@ void bakeClustered(const BakeTask& task, BakedScene& baked, BakeReport& report) 
   const auto columns = joint ? rows.size() : rows.texels();
   // With levels the fractions are part of a row, else bytes beside it.
   const auto directions = layout.directions.size(), sideBytes = joint ? 0 : directions;
-  const PcaSettings pcaSettings{.terms = automatic(settings.functions, count, 160, 32, 320), .iterations = 2, .seed = settings.seed, .threads = settings.threads};
-  const ClusterSettings clusterSettings{.clusters = automatic(settings.clusters, count, 80, 1, 1024),
-                                        .terms = settings.terms,
-                                        .seed = settings.seed,
-                                        .threads = settings.threads};
-
+  const auto mostSize = sizeOf(settings, mostBytes(settings), count, columns);
+  const PcaSettings pcaSettings{.terms = mostSize.functions, .iterations = 2, .seed = settings.seed, .threads = settings.threads};
   const Needs needs{.vertices = count,
                     .rowColumns = rows.size(),
                     .columns = columns,
                     .functions = static_cast<std::size_t>(pcaSettings.terms),
                     .sampled = std::min(count, kMostSampled),
-                    .clusters = static_cast<std::size_t>(clusterSettings.clusters),
+                    .clusters = static_cast<std::size_t>(mostSize.clusters),
                     .terms = static_cast<std::size_t>(settings.terms),
                     .fractionBytes = directions,
                     .pca = pcaSettings,
@@ -274,16 +288,43 @@ void bakeClustered(const BakeTask& task, BakedScene& baked, BakeReport& report) 
   compressionStart = Clock::now();
   std::vector<std::size_t> primitiveVertices;
   for (const auto& p : baked.scene.primitives) primitiveVertices.push_back(p.positions.size());
-  const auto clusters = clusterRows(coordinates.read(chosen(count, kMostTraining, settings.seed + 1)), clusterSettings, task.stage("clusters"));
-  encodeClusters(pca, clusters, coordinates, primitiveVertices, encodingOf(settings), transfer);
+  const auto training = chosen(count, kMostTraining, settings.seed + 1);
+  const Transfer plain = transfer;
+  const auto compress = [&](double bytes) {
+    const auto start = Clock::now();
+    const auto size = sizeOf(settings, bytes, count, columns);
+    const Pca leading = leadingTerms(pca, size.functions);
+    coordinates.useColumns(static_cast<std::size_t>(leading.terms));
+    const auto clusters = clusterRows(coordinates.read(training),
+                                      {.clusters = size.clusters, .terms = settings.terms, .seed = settings.seed, .threads = settings.threads}, task.stage("clusters"));
+    transfer = plain;
+    encodeClusters(leading, clusters, coordinates, primitiveVertices, encodingOf(settings, bytes), transfer);
+    report.seconds.compression += secondsSince(start);
+    report.error = measureClusteredError(task.rays, viewpoints, rows, transfer, settings, task.stage("error"));
+  };
+  report.seconds.compression += secondsSince(compressionStart);
+  if (settings.targetError > 0.0) {
+    // The fewest bytes that do; more of them are never worse by more than the measurement's own noise.
+    std::vector<double> rungs(std::begin(kByteRungs), std::end(kByteRungs));
+    rungs.push_back(mostBytes(settings));
+    std::size_t low = 0, high = rungs.size() - 1, last = rungs.size();
+    while (low < high) {
+      last = (low + high) / 2;
+      compress(rungs[last]);
+      if (worstFraction(report.error) <= settings.targetError) high = last;
+      else low = last + 1;
+    }
+    if (last != low) compress(rungs[low]);
+    report.missedTarget = !(worstFraction(report.error) <= settings.targetError);
+  } else {
+    compress(mostBytes(settings));
+  }
   coordinates = {};
   restCoordinates.reset();
-  report.seconds.compression += secondsSince(compressionStart);
   if (joint) decodeFractions(transfer);
 
   report.terms = transfer.terms;
   report.bytesPerVertex = transfer.bytesPerVertex(count);
-  report.error = measureClusteredError(task.rays, viewpoints, rows, transfer, settings, task.stage("error"));
 }
 
 }  // namespace chiaro

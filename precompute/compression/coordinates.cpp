@@ -14,21 +14,21 @@ void CoordinateScale::pack(const float* values, std::int16_t* out) const {
   }
 }
 
-void CoordinateScale::unpack(const std::int16_t* packed, float* values) const {
-  for (std::size_t d = 0; d < columns(); ++d) values[d] = static_cast<float>(packed[d]) * (most[d] / 32767.0f);
+void CoordinateScale::unpack(const std::int16_t* packed, std::size_t count, float* values) const {
+  for (std::size_t d = 0; d < count; ++d) values[d] = static_cast<float>(packed[d]) * (most[d] / 32767.0f);
 }
 
 CoordinateStore::CoordinateStore(std::size_t rows, std::vector<float> scale)
-    : rows_(rows), scale_{std::move(scale)}, values_(rows * scale_.columns()) {}
+    : rows_(rows), scale_{std::move(scale)}, used_(scale_.columns()), values_(rows * scale_.columns()) {}
 
 CoordinateStore::CoordinateStore(std::vector<std::uint32_t> held, const RowBlocks& rest, CoordinateScale scale)
-    : rows_(held.size() + rest.rows()), scale_(std::move(scale)), held_(std::move(held)), rest_(&rest), values_(held_.size() * scale_.columns()) {
+    : rows_(held.size() + rest.rows()), scale_(std::move(scale)), used_(scale_.columns()), held_(std::move(held)), rest_(&rest), values_(held_.size() * scale_.columns()) {
   if (rest.columns() != scale_.columns()) throw std::invalid_argument("CoordinateStore: rows of another length");
 }
 
 void CoordinateStore::set(std::size_t row, const float* values) {
   const auto place = rest_ == nullptr ? row : static_cast<std::size_t>(std::lower_bound(held_.begin(), held_.end(), row) - held_.begin());
-  scale_.pack(values, values_.data() + place * columns());
+  scale_.pack(values, values_.data() + place * scale_.columns());
 }
 
 Coordinates CoordinateStore::read(std::size_t first, std::size_t count) const {
@@ -46,19 +46,19 @@ Coordinates CoordinateStore::read(std::span<const std::uint32_t> rows) const {
     const std::size_t row = rows[i];
     const std::int16_t* packed = nullptr;
     if (rest_ == nullptr) {
-      packed = values_.data() + row * columns();
+      packed = values_.data() + row * scale_.columns();
     } else {
       const auto above = std::lower_bound(held_.begin(), held_.end(), row);
       const auto before = static_cast<std::size_t>(above - held_.begin());
       if (above != held_.end() && *above == row) {
-        packed = values_.data() + before * columns();
+        packed = values_.data() + before * scale_.columns();
       } else {
         const auto place = row - before, wanted = place / RowBlocks::kRows;
         if (block == nullptr || wanted != current) block = rest_->block(current = wanted, room);
-        packed = block + place % RowBlocks::kRows * columns();
+        packed = block + place % RowBlocks::kRows * scale_.columns();
       }
     }
-    scale_.unpack(packed, result.values.data() + i * columns());
+    scale_.unpack(packed, columns(), result.values.data() + i * columns());
   }
   return result;
 }

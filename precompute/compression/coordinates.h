@@ -16,7 +16,8 @@ struct CoordinateScale {
 
   std::size_t columns() const { return most.size(); }
   void pack(const float* values, std::int16_t* out) const;
-  void unpack(const std::int16_t* packed, float* values) const;
+  /// The first `count` columns.
+  void unpack(const std::int16_t* packed, std::size_t count, float* values) const;
 };
 
 /// Some rows are held here, the others may be anywhere.
@@ -29,7 +30,9 @@ class CoordinateStore {
   CoordinateStore(std::vector<std::uint32_t> held, const RowBlocks& rest, CoordinateScale scale);
 
   std::size_t rows() const { return rows_; }
-  std::size_t columns() const { return scale_.columns(); }
+  std::size_t columns() const { return used_; }
+  /// From now on only the first `columns` of a row are read.
+  void useColumns(std::size_t columns) { used_ = columns; }
   /// row: one that is held.
   void set(std::size_t row, const float* values);
   /// Rows [first, first + count).
@@ -40,6 +43,7 @@ class CoordinateStore {
  private:
   std::size_t rows_ = 0;
   CoordinateScale scale_;
+  std::size_t used_ = 0;
   std::vector<std::uint32_t> held_;
   const RowBlocks* rest_ = nullptr;  ///< null: all rows are held
   std::vector<std::int16_t> values_;

@@ -165,6 +165,17 @@ void toFixedPoint(const float* values, std::size_t count, float range, std::int1
 
 void FixedPointMatrix::setRow(std::size_t i, const float* source) { toFixedPoint(source, columns, range, row(i)); }
 
+Pca leadingTerms(const Pca& pca, int terms) {
+  Pca result;
+  result.terms = std::min(terms, pca.terms);
+  const auto count = static_cast<std::size_t>(result.terms);
+  result.mean = pca.mean;
+  result.functions.assign(pca.functions.begin(), pca.functions.begin() + index(count * pca.mean.size()));
+  result.energy.assign(pca.energy.begin(), pca.energy.begin() + index(count));
+  result.totalEnergy = pca.totalEnergy;
+  return result;
+}
+
 Pca computePca(const FixedPointMatrix& matrix, const std::vector<float>& columnWeight, const PcaSettings& settings,
                const std::function<void(double)>& progress) {
   return computePca(MatrixBlocks(matrix), matrix.range, columnWeight, settings, progress);

@@ -51,6 +51,9 @@ struct Pca {
   double totalEnergy = 0.0;         ///< sum_ij columnWeight[j] (value - mean)^2
 };
 
+/// The strongest `terms` of them, without weights.
+Pca leadingTerms(const Pca& pca, int terms);
+
 /// Randomised subspace iteration (Halko, Martinsson and Tropp 2011, algorithm 4.4 on the covariance) and a Rayleigh-Ritz step.
 /// Goes over the rows 3 + iterations times, a strip of at most 64 MiB (and at least a block) after the other, so they may be far larger
 /// than memory. rows: 16-bit fixed point in [-range, range]. columnWeight: #columns, > 0. progress: share done in [0, 1], one thread at

@@ -67,6 +67,8 @@ Fingerprint fingerprintOf(const Scene& scene, const BakeSettings& settings, cons
   hash.add(settings.directionSharpness);
   if (settings.compression != Compression::pca) {
     hash.add(settings.functions);
+    hash.add(settings.bytesPerVertex);  // these two choose the number of functions
+    hash.add(settings.targetError > 0.0);
     hash.add(settings.seed);
   }
   hash.add(scene.primitives.size());

@@ -75,6 +75,7 @@ std::string bakeJson(const BakeRun& run, const BakeReport& report) {
         {"function_bits", run.settings.functionBits},
         {"wide_terms", run.settings.wideTerms},
         {"bytes_per_vertex", run.settings.bytesPerVertex},
+        {"target_error", run.settings.targetError},
         {"directions", run.settings.directionCount},
         {"direction_sharpness", run.settings.directionSharpness},
         {"crease_angle_deg", static_cast<double>(run.settings.creaseAngle) * 180.0 / std::numbers::pi},

@@ -1,6 +1,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
@@ -68,6 +69,8 @@ void declare(CLI::App& app, Options& options) {
   shown(app.add_option("--weight-bits", settings.weightBits, "Bits of a weight, 8 or 16"), "N");
   shown(app.add_option("--wide-terms", settings.wideTerms, "Terms of a cluster kept in full; the weaker ones take 4 bits a number"), "N");
   shown(app.add_option("--bytes", settings.bytesPerVertex, "Bytes a vertex, all counted; weak terms are dropped to fit; 0: 104, but 40 for terms at least; below 0: no limit"), "N");
+  shown(app.add_option("--target-error", settings.targetError,
+                       "As few bytes as keep the mean error of visible fractions at or below this; chooses bytes, functions and clusters; 0 is off"), "E");
   shown(app.add_option("--function-bits", settings.functionBits, "Bits of a function's values: 16, 8, 4, or 0 for 8 and 4 by what each is worth"), "N");
   shown(app.add_option("--resolution", settings.resolution, "Texels a side of the octahedral sphere, 16 to 256, a multiple of 4"), "N");
   shown(app.add_option("--sample-resolution", settings.samplingResolution,
@@ -261,6 +264,9 @@ ExitCode precompute(int argc, char** argv) {
     }
   });
   bar.clear();
+  if (report.missedTarget)
+    run.warnings.push_back("--target-error is not reached with " + std::to_string(std::lround(report.bytesPerVertex)) +
+                           " bytes a vertex: give more --terms, --resolution or --sample-resolution, or --refine");
 
   const auto writeStart = std::chrono::steady_clock::now();
   throwIfInterrupted();

@@ -165,8 +165,8 @@ TEST(ClusteredBake, JointSaysHowGoodItIs) {
 TEST(ClusteredBake, ManyTermsLoseOnlyRounding) {
   const auto b = baked(boxesOnFloor(8), lossless(kClustered));
   expectFinite(b);
-  // Components are bytes: what they leave of one another is fitted by the later ones, and what the last leave is small.
-  EXPECT_LE(b["ssdf_rms_radians"], 5e-4);
+  // Components and means are bytes: what they leave of one another is fitted by the later ones, and what the last leave is small.
+  EXPECT_LE(b["ssdf_rms_radians"], 1e-3);
   EXPECT_LE(b["ssdf_sign_share"], 1e-4);
   const auto joint = baked(boxesOnFloor(8), lossless(kJoint));
   for (const int sharpness : kSharpness) EXPECT_LE(std::abs(joint.fraction(sharpness) - joint.fraction(sharpness, true)), 5e-4) << sharpness;
@@ -339,9 +339,9 @@ TEST(ClusteredBake, HardlyDependsOnScaleAndPlace) {
   for (const float scale : {1e-3f, 1e4f}) {
     const auto b = baked(scaled(boxesOnFloor(6), scale), kJoint);
     expectFinite(b);
-    // The same signal but for rays through an edge.
+    // The same signal but for rays through an edge; what these change in the components, 4 bits round anew.
     EXPECT_LE(std::abs(b["ssdf_rms_radians"] / original["ssdf_rms_radians"] - 1.0), 0.05) << scale;
-    for (const int sharpness : kSharpness) EXPECT_LE(std::abs(b.fraction(sharpness) - original.fraction(sharpness)), 1e-3) << scale;
+    for (const int sharpness : kSharpness) EXPECT_LE(std::abs(b.fraction(sharpness) - original.fraction(sharpness)), 2e-3) << scale;
   }
   const auto far = baked(scaled(boxesOnFloor(6), 1.0f, glm::vec3(1e4f, -1e4f, 3e3f)), kJoint);
   expectFinite(far);
@@ -434,6 +434,52 @@ TEST(ClusteredBake, ProgressMayStopIt) {
   }
 }
 
+TEST(ClusteredBake, BytesAVertexAreAnUpperLimit) {
+  const auto scene = boxesOnFloor(8);
+  auto settings = kJoint;
+  settings.functions = 32;
+  settings.clusters = 8;
+  settings.bytesPerVertex = -1.0;
+  const auto whole = baked(scene, settings);
+  settings.bytesPerVertex = whole.report.bytesPerVertex - 10.0;  // of some 24 that terms take; the functions stay
+  const auto part = baked(scene, settings);
+  expectFinite(part);
+  // Vertices that change their cluster take its number of weights.
+  EXPECT_LE(part.report.bytesPerVertex, 1.01 * settings.bytesPerVertex);
+  EXPECT_GE(part.report.bytesPerVertex, settings.bytesPerVertex - 2.0) << "what is allowed is used";
+  EXPECT_GE(part["ssdf_rms_radians"], whole["ssdf_rms_radians"]);
+  // Nothing but means fits; that is a bake too.
+  settings.bytesPerVertex = 1.0;
+  const auto none = baked(scene, settings);
+  expectFinite(none);
+  EXPECT_EQ(none.report.terms, 0);
+}
+
+TEST(ClusteredBake, TheTargetErrorIsKeptWithFewBytes) {
+  const auto scene = boxesOnFloor(16);
+  auto settings = kJoint;
+  double worst = 0.0, before = 1e9;
+  for (const double target : {0.012, 0.06}) {
+    settings.targetError = target;
+    const auto b = baked(scene, settings);
+    worst = 0.0;
+    for (const int sharpness : kSharpness) worst = std::max(worst, b.fraction(sharpness));
+    EXPECT_FALSE(b.report.missedTarget);
+    EXPECT_LE(worst, target);
+    EXPECT_LT(b.report.bytesPerVertex, before);
+    before = b.report.bytesPerVertex;
+  }
+}
+
+TEST(ClusteredBake, ATargetErrorOutOfReachIsSaid) {
+  auto settings = kJoint;
+  settings.targetError = 1e-6;
+  const auto b = baked(boxesOnFloor(4), settings);
+  EXPECT_TRUE(b.report.missedTarget);
+  // As good as the traced rows but for rounding.
+  for (const int sharpness : kSharpness) EXPECT_LE(std::abs(b.fraction(sharpness) - b.fraction(sharpness, true)), 0.01) << sharpness;
+}
+
 TEST(ClusteredBake, RefusesWhatItCannotDo) {
   const auto refused = [](const auto& change) {
     for (auto settings : {kJoint, kClustered}) {
@@ -452,6 +498,10 @@ TEST(ClusteredBake, RefusesWhatItCannotDo) {
   for (const int functions : {-1, 1025}) EXPECT_TRUE(refused([&](BakeSettings& s) { s.functions = functions; })) << functions;
   for (const int bits : {-8, 0, 4, 12, 32}) EXPECT_TRUE(refused([&](BakeSettings& s) { s.weightBits = bits; })) << bits;
   for (const int bits : {-4, 1, 5, 12, 32}) EXPECT_TRUE(refused([&](BakeSettings& s) { s.functionBits = bits; })) << bits;
+  for (const int terms : {-1, 257}) EXPECT_TRUE(refused([&](BakeSettings& s) { s.wideTerms = terms; })) << terms;
+  for (const double bytes : {std::nan(""), HUGE_VAL}) EXPECT_TRUE(refused([&](BakeSettings& s) { s.bytesPerVertex = bytes; })) << bytes;
+  for (const double error : {-0.1, 1.0, std::nan("")}) EXPECT_TRUE(refused([&](BakeSettings& s) { s.targetError = error; })) << error;
+  EXPECT_TRUE(refused([&](BakeSettings& s) { s.targetError = 0.02, s.bytesPerVertex = 50.0; }));
   for (const int sampling : {-16, 8, 15, 24, 48, 2048, std::numeric_limits<int>::max(), std::numeric_limits<int>::min()})
     EXPECT_TRUE(refused([&](BakeSettings& s) { s.samplingResolution = sampling; })) << sampling;
   for (const int resolution : {8, 20, 28, 264}) {
