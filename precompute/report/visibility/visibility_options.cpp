@@ -33,6 +33,8 @@ void declareVisibilityOptions(CLI::App& app, VisibilityOptions& options) {
   shown(app.add_option("--basis-vertices", settings.basisVertices, "Most random vertices that the components are computed from"));
   app.add_flag("--ground", options.ground,
                "Put a square of 1600 vertices, three diagonals wide, under scenes that are not baked");
+  app.add_option("--bake", options.bake, "Bake scenes that are not baked with so many bytes a vertex (0: as a bake chooses), else with default settings, and measure that; may be repeated")
+      ->type_name("BYTES");
   shown(app.add_option("--seed", settings.seed, "Of the random choices"));
   shown(app.add_option("--threads", settings.threads, "CPU threads, 0 is all; never changes the figures"));
   app.add_flag("-q,--quiet", options.quiet, "Print nothing but errors");
@@ -49,6 +51,8 @@ void finishVisibilityOptions(const VisibilityOptions& options) {
   if (settings.resolution % 4 != 0) throw usageError("--resolution", "is not a multiple of 4", "use 32, 64, 128, ...");
   requireRange("--terms", settings.terms, 1, 256);
   requireRange("--basis-vertices", settings.basisVertices, 1, 1 << 20);
+  for (const double bytes : options.bake)
+    if (!(bytes >= 0.0 && bytes <= 1e6)) throw usageError("--bake", "is not a number of bytes", "give a number such as 104");
   requireRange("--threads", settings.threads, 0, 1024);
   for (const auto& scene : options.scenes)
     if (!options.json.empty() && !isBuiltinName(scene) && isSameFile(options.json, scene))

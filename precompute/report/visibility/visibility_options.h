@@ -18,6 +18,7 @@ struct VisibilityOptions {
   std::filesystem::path output;     ///< a folder, made where missing; empty: none
   std::filesystem::path json;       ///< empty: none
   VisibilitySettings settings;
+  std::vector<double> bake;         ///< bytes a vertex, one bake each
   bool ground = false;
   bool quiet = false;
 };

@@ -5,7 +5,7 @@
 #include <chrono>
 #include <cstdio>
 #include <iostream>
-#include <optional>
+#include <stdexcept>
 
 #include "assets/builtin/builtin_scene.h"
 #include "assets/file.h"
@@ -14,6 +14,7 @@
 #include "assets/scene/load_scene.h"
 #include "assets/transfer/transfer.h"
 #include "assets/transfer/transfer_format.h"
+#include "precompute/bake.h"
 #include "precompute/report/visibility/ground.h"
 #include "precompute/report/visibility/transfer_method.h"
 #include "precompute/report/visibility/visibility_options.h"
@@ -25,6 +26,8 @@ namespace {
 constexpr const char* kExamples = R"(Examples:
   chiaro-report visibility builtin:ornament
   chiaro-report visibility bunny.ply --ground -o signal
+  chiaro-report visibility bunny.ply --bake 104 --bake 400
+      joint bakes of so many bytes a vertex beside the others
   chiaro-report visibility baked.glb --json signal.json
       the stored transfer beside the others
 
@@ -40,27 +43,45 @@ bool isBaked(const std::string& path) {
 
 struct Input {
   Scene scene;
-  std::optional<Transfer> transfer;
+  std::vector<Transfer> transfers;
 };
+
+/// Bakes `input` once for each number of bytes a vertex.
+void bakeInto(Input& input, const VisibilityOptions& options, ProgressBar& bar) {
+  for (const double bytes : options.bake) {
+    BakeReport report;
+    auto baked = bake(input.scene, {.bytesPerVertex = bytes, .seed = options.settings.seed, .threads = options.settings.threads}, report,
+                      [&](const std::string& stage, double done) {
+                        throwIfInterrupted();
+                        bar.update("bake: " + stage, done);
+                      });
+    if (baked.scene.vertexCount() != input.scene.vertexCount()) throw std::logic_error("a prepared scene changed when it was baked");
+    input.transfers.push_back(std::move(baked.transfer));
+  }
+}
 
 Input load(const std::string& name, bool ground) {
   if (isBaked(name)) {
     if (ground) throw usageError("--ground", name + " is baked already", "give the scene that it was baked from");
     auto baked = readBakedScene(name);
-    return {std::move(baked.scene), std::move(baked.transfer)};
+    Input input{.scene = std::move(baked.scene), .transfers = {}};
+    input.transfers.push_back(std::move(baked.transfer));
+    return input;
   }
   Scene scene = isBuiltinName(name) ? builtinScene(name) : loadScene(name);
   if (ground) addGround(scene);
   RepairReport repairs;
-  return {prepareScene(scene, BakeSettings{}.creaseAngle, repairs), std::nullopt};
+  return {.scene = prepareScene(std::move(scene), BakeSettings{}.creaseAngle, repairs), .transfers = {}};
 }
 
 SceneComparison compareScene(const std::string& name, const VisibilityOptions& options, ProgressBar& bar) {
   const auto start = std::chrono::steady_clock::now();
-  const Input input = load(name, options.ground);
+  Input input = load(name, options.ground);
+  if (input.transfers.empty()) bakeInto(input, options, bar);
   const MethodMaker methods = [&](const VisibilityInput& from) {
     auto all = baselineMethods(from);
-    if (input.transfer) all.insert(all.begin(), makeTransferMethod(*input.transfer));
+    for (std::size_t i = 0; i < input.transfers.size(); ++i)
+      all.insert(all.begin() + static_cast<std::ptrdiff_t>(i), makeTransferMethod(input.transfers[i]));
     return all;
   };
   SceneComparison result;
