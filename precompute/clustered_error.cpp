@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -23,10 +24,19 @@ constexpr std::uint32_t kRays = 512;
 
 /// Share of the lobe's rays that leave above the horizon and meet nothing.
 double tracedFraction(const RayScene& rays, glm::vec3 origin, glm::vec3 n, glm::dvec3 axis, double sharpness, double turn) {
-  std::uint32_t seen = 0;
-  for (std::uint32_t i = 0; i < kRays; ++i) {
-    const auto w = lobeDirection(axis, sharpness, i, kRays, turn);
-    if (glm::dot(w, n) > 0.0f && !rays.occluded(origin, w, 0.0f, std::numeric_limits<float>::infinity())) ++seen;
+  static_assert(kRays % 16 == 0);
+  int seen = 0;
+  alignas(64) float x[16], y[16], z[16];
+  for (std::uint32_t first = 0; first < kRays; first += 16) {
+    unsigned asked = 0;
+    for (std::uint32_t i = 0; i < 16; ++i) {
+      const auto w = lobeDirection(axis, sharpness, first + i, kRays, turn);
+      x[i] = w.x, y[i] = w.y, z[i] = w.z;
+      if (glm::dot(w, n) > 0.0f) asked |= 1u << i;
+    }
+    if (asked == 0) continue;
+    const unsigned hidden = rays.occluded16(origin, x, y, z, static_cast<std::uint16_t>(asked), 0.0f, std::numeric_limits<float>::infinity());
+    seen += std::popcount(asked & ~hidden);
   }
   return static_cast<double>(seen) / kRays;
 }

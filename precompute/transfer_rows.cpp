@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <chrono>
+#include <utility>
 
 #include "precompute/ssdf/ssdf.h"
 #include "precompute/visibility/visibility.h"
+#include "shaders/cpp/lobe.h"
 
 namespace chiaro {
 namespace {
@@ -22,6 +24,23 @@ void lap(Clock::time_point& from, double& sum) {
 int coarseBelow(int resolution) {
   while (resolution > 64 && resolution % 16 == 0) resolution /= 2;
   return resolution;
+}
+
+/// Positions in `vertices`, those with like normals beside each other: what a batch has below all its horizons is not filtered.
+std::vector<std::size_t> byNormal(std::span<const std::uint32_t> vertices, const std::vector<Viewpoint>& viewpoints) {
+  constexpr unsigned kSide = 16;
+  std::vector<std::pair<unsigned, std::size_t>> keyed;
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    const auto place = lobe32::octahedralEncode(viewpoints[vertices[i]].normal) * static_cast<float>(kSide);
+    const auto cell = [](float x) { return static_cast<unsigned>(std::clamp(x, 0.0f, kSide - 1.0f)); };
+    unsigned key = 0;  // along a Z curve
+    for (unsigned bit = kSide / 2; bit > 0; bit /= 2) key = 4 * key + ((cell(place.y) & bit) != 0 ? 2 : 0) + ((cell(place.x) & bit) != 0 ? 1 : 0);
+    keyed.emplace_back(key, i);
+  }
+  std::sort(keyed.begin(), keyed.end());
+  std::vector<std::size_t> order;
+  for (const auto& [key, i] : keyed) order.push_back(i);
+  return order;
 }
 
 }  // namespace
@@ -52,11 +71,15 @@ TraceTally TransferRows::operator()(std::span<const std::uint32_t> vertices, flo
   Viewpoint viewpoints[kBatch];
   SsdfTransform transform(sampled_, stored_, layout_.clamp);
   auto scratch = prefilter_.scratch();
+  const auto order = byNormal(vertices, viewpoints_);
   for (std::size_t first = 0; first < vertices.size(); first += kBatch) {
     const auto count = std::min(kBatch, vertices.size() - first);
+    float* levels[kBatch] = {};
     for (std::size_t i = 0; i < count; ++i) {
-      float* row = rows + (first + i) * stride;
-      const auto& viewpoint = viewpoints[i] = viewpoints_[vertices[first + i]];
+      const auto place = order[first + i];
+      float* row = rows + place * stride;
+      levels[i] = row + texels();
+      const auto& viewpoint = viewpoints[i] = viewpoints_[vertices[place]];
       auto time = Clock::now();
       tally.rays += adaptive(viewpoint);
       above[i] = adaptive.above();
@@ -71,7 +94,7 @@ TraceTally TransferRows::operator()(std::span<const std::uint32_t> vertices, flo
     }
     if (layout_.levels.empty()) continue;
     auto time = Clock::now();
-    prefilter_(count, viewpoints, above, visible, rows + first * stride + texels(), stride, scratch);
+    prefilter_(count, viewpoints, above, visible, levels, scratch);
     lap(time, tally.filterSeconds);
   }
   return tally;

@@ -15,6 +15,9 @@ constexpr float kFaintest = 1e-4f;      // of a lobe's peak: what is left out
 constexpr float kLeastAbove = 1.0f / 30.0f;
 constexpr float kTexelsPerLobe = 1.5f;  // a texel is at most this part of the lobe's standard deviation 1 / sqrt(sharpness)
 
+// Bits of Scratch::wanted.
+constexpr std::uint8_t kSeen = 1, kAll = 2;
+
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 /// Share of a normalised lobe that is above the horizon, tabulated: it is asked for at every texel of every vertex.
@@ -85,7 +88,20 @@ PrefilteredVisibility::PrefilteredVisibility(const OctahedralGrid& grid, const s
         level.tapWeight[i] = static_cast<float>(static_cast<double>(level.tapWeight[i]) / sum);
     }
     level.firstTap.push_back(static_cast<std::uint32_t>(level.tapTexel.size()));
+    // A texel's corners are less than 4 / R from its centre.
+    const float reach = std::sqrt(-2.0f * std::log(kFaintest) / level.sharpness);
+    const float angle = reach < 2.0f ? 2.0f * std::asin(0.5f * reach) + 4.0f / static_cast<float>(g.resolution) : 4.0f;
+    if (angle < 1.5f) level.clearOfHorizon = std::sin(angle);
+    for (int i = 0; i <= kShares && level.shareAbove[at(i)] <= kLeastAbove; ++i) level.leastAbove = 2.0f * static_cast<float>(i) / kShares - 1.0f;
   }
+
+  // The same sums in the same order as those of a vertex whose horizon is far.
+  auto all = scratch();
+  for (std::size_t i = 0; i < grids_[0].direction.size(); ++i) std::fill_n(all.mass[0].data() + i * kBatch, kBatch, grids_[0].solidAngle[i]);
+  sumCoarser(all);
+  std::fill(all.wanted.begin(), all.wanted.end(), kAll);
+  gather(all, kAll, all.all);
+  for (std::size_t j = 0; j < size_; ++j) whole_.push_back(all.all[j * kBatch]);
 }
 
 PrefilteredVisibility::Scratch PrefilteredVisibility::scratch() const {
@@ -93,6 +109,7 @@ PrefilteredVisibility::Scratch PrefilteredVisibility::scratch() const {
   for (const auto& g : grids_) s.mass.emplace_back(g.direction.size() * kBatch);
   s.seen = AlignedFloats(size_ * kBatch);
   s.all = AlignedFloats(size_ * kBatch);
+  s.wanted.resize(size_);
   return s;
 }
 
@@ -116,6 +133,10 @@ void PrefilteredVisibility::fillMass(std::size_t count, const Viewpoint* viewpoi
   }
   for (std::size_t t = 0; t < grids_[0].direction.size(); ++t)
     for (std::size_t i = 0; i < kBatch; ++i) finest[t * kBatch + i] *= grids_[0].solidAngle[t];
+  sumCoarser(scratch);
+}
+
+void PrefilteredVisibility::sumCoarser(Scratch& scratch) const {
   for (std::size_t g = 1; g < grids_.size(); ++g) {
     const float* fine = scratch.mass[g - 1].data();
     float* coarse = scratch.mass[g].data();
@@ -130,7 +151,21 @@ void PrefilteredVisibility::fillMass(std::size_t count, const Viewpoint* viewpoi
   }
 }
 
-void PrefilteredVisibility::gather(const Scratch& scratch, AlignedFloats& sums) const {
+/// Lobes that are below the horizon of every vertex are not asked for, and of those above it all is known.
+void PrefilteredVisibility::markWanted(std::size_t count, const Viewpoint* viewpoints, bool back, Scratch& scratch) const {
+  for (const auto& level : levels_)
+    for (std::size_t p = 0; p < level.axis.size(); ++p) {
+      std::uint8_t wanted = 0;
+      for (std::size_t i = 0; i < count; ++i) {
+        if (back && !viewpoints[i].doubleSided) continue;
+        const float sine = glm::dot(back ? -viewpoints[i].normal : viewpoints[i].normal, level.axis[p]);
+        if (sine > level.leastAbove) wanted = static_cast<std::uint8_t>(wanted | (sine > level.clearOfHorizon ? kSeen : kSeen | kAll));
+      }
+      scratch.wanted[level.first + p] = wanted;
+    }
+}
+
+void PrefilteredVisibility::gather(const Scratch& scratch, std::uint8_t which, AlignedFloats& sums) const {
   runVectorised([&]<typename Vector>() CHIARO_INLINE {
     constexpr int kParts = static_cast<int>(kBatch) / kWidth<Vector>;
     float* out = sums.data();
@@ -140,6 +175,7 @@ void PrefilteredVisibility::gather(const Scratch& scratch, AlignedFloats& sums) 
       const float* weight = level.tapWeight.data();
       const std::size_t texels = level.axis.size(), base = level.first;
       for (std::size_t p = 0; p < texels; ++p) {
+        if ((scratch.wanted[base + p] & which) == 0) continue;
         Vector sum[kParts] = {};
         for (std::uint32_t i = first[p]; i < first[p + 1]; ++i) {
           const float w = weight[i];
@@ -160,7 +196,7 @@ void PrefilteredVisibility::store(const Viewpoint& viewpoint, bool back, std::si
       if (viewpoint.doubleSided && sine < 0.0f) continue;  // the other side's
       const std::size_t j = level.first + p;
       // Both are sums over the same texels, so that what the horizon's own texels get wrong cancels: an open vertex has exactly 1.
-      const float all = scratch.all[j * kBatch + lane];
+      const float all = sine > level.clearOfHorizon ? whole_[j] : scratch.all[j * kBatch + lane];
       out[j] = shareAt(level.shareAbove, sine) > kLeastAbove && all > 0.0f ? std::min(scratch.seen[j * kBatch + lane] / all, 1.0f) : -1.0f;
     }
 }
@@ -181,19 +217,20 @@ void PrefilteredVisibility::mirrorHidden(const Viewpoint& viewpoint, float* out)
 }
 
 void PrefilteredVisibility::operator()(std::size_t count, const Viewpoint* viewpoints, const TexelBits* above, const TexelBits* visible,
-                                       float* out, std::size_t stride, Scratch& scratch) const {
+                                       float* const* out, Scratch& scratch) const {
   const bool anyBack = std::any_of(viewpoints, viewpoints + count, [](const Viewpoint& v) { return v.doubleSided; });
   for (const bool back : {false, true}) {
     if (back && !anyBack) break;
+    markWanted(count, viewpoints, back, scratch);
     fillMass(count, viewpoints, above, visible, back, scratch);
-    gather(scratch, scratch.seen);
+    gather(scratch, kSeen, scratch.seen);
     fillMass(count, viewpoints, above, nullptr, back, scratch);
-    gather(scratch, scratch.all);
+    gather(scratch, kAll, scratch.all);
     for (std::size_t i = 0; i < count; ++i)
-      if (!back || viewpoints[i].doubleSided) store(viewpoints[i], back, i, scratch, out + i * stride);
+      if (!back || viewpoints[i].doubleSided) store(viewpoints[i], back, i, scratch, out[i]);
   }
   for (std::size_t i = 0; i < count; ++i)
-    if (!viewpoints[i].doubleSided) mirrorHidden(viewpoints[i], out + i * stride);
+    if (!viewpoints[i].doubleSided) mirrorHidden(viewpoints[i], out[i]);
 }
 
 }  // namespace chiaro

@@ -30,12 +30,13 @@ class PrefilteredVisibility {
   struct Scratch {
     std::vector<AlignedFloats> mass;  ///< by grid of the pyramid: #texels by kBatch
     AlignedFloats seen, all;          ///< #size by kBatch
+    std::vector<std::uint8_t> wanted; ///< by texel of the output: what of the two has to be summed
   };
   Scratch scratch() const;
 
-  /// Up to kBatch vertices. viewpoints, above, visible: `count` each. out: vertex i at out + i * stride.
-  void operator()(std::size_t count, const Viewpoint* viewpoints, const TexelBits* above, const TexelBits* visible, float* out,
-                  std::size_t stride, Scratch& scratch) const;
+  /// Up to kBatch vertices, fastest with like normals. viewpoints, above, visible: `count` each; out: where each vertex's values go.
+  void operator()(std::size_t count, const Viewpoint* viewpoints, const TexelBits* above, const TexelBits* visible, float* const* out,
+                  Scratch& scratch) const;
 
  private:
   struct Grid {
@@ -53,10 +54,15 @@ class PrefilteredVisibility {
     std::vector<std::uint32_t> tapTexel;
     std::vector<float> tapWeight;         ///< SG, normalised over the sphere
     std::vector<float> shareAbove;        ///< table over dot(normal, axis) in [-1, 1]
+    float clearOfHorizon = 2.0f;          ///< no tap reaches the horizon where dot(normal, axis) is above this
+    float leastAbove = -1.0f;             ///< below this dot(normal, axis) too little is above the horizon
   };
   /// visible: null for all of the side.
   void fillMass(std::size_t count, const Viewpoint* viewpoints, const TexelBits* above, const TexelBits* visible, bool back, Scratch& scratch) const;
-  void gather(const Scratch& scratch, AlignedFloats& sums) const;
+  void sumCoarser(Scratch& scratch) const;
+  void markWanted(std::size_t count, const Viewpoint* viewpoints, bool back, Scratch& scratch) const;
+  /// Texels of which `wanted` has the bit `which`.
+  void gather(const Scratch& scratch, std::uint8_t which, AlignedFloats& sums) const;
   void store(const Viewpoint& viewpoint, bool back, std::size_t lane, const Scratch& scratch, float* out) const;
   void mirrorHidden(const Viewpoint& viewpoint, float* out) const;
 
@@ -65,6 +71,7 @@ class PrefilteredVisibility {
   std::vector<std::uint32_t> finestOf_;          ///< texel of the source grid -> texel of grids_[0]
   float share_ = 1.0f;                           ///< of a grids_[0] texel that one source texel is
   std::vector<Level> levels_;
+  std::vector<float> whole_;                     ///< by texel of the output: `all` where the horizon is far
   std::size_t size_ = 0;
 };
 

@@ -41,7 +41,8 @@ class Filtered {
         visible[t / 16] = static_cast<std::uint16_t>(visible[t / 16] | 1u << t % 16);
     values.resize(prefilter_.size());
     auto scratch = prefilter_.scratch();
-    prefilter_(1, &viewpoint, &above, &visible, values.data(), values.size(), scratch);
+    float* out = values.data();
+    prefilter_(1, &viewpoint, &above, &visible, &out, scratch);
   }
   std::vector<float> values;
 
@@ -240,9 +241,12 @@ TEST(Prefilter, ABatchIsWhatEachVertexIsAlone) {
       visible[i][t] = static_cast<std::uint16_t>((t * 2654435761u >> i) & (viewpoints[i].doubleSided ? 0xffffu : above[i][t]));
   }
   std::vector<float> together(kCount * stride, -7.0f), alone(prefilter.size());
-  prefilter(kCount, viewpoints, above, visible, together.data(), stride, scratch);
+  float* rows[kCount];
+  for (std::size_t i = 0; i < kCount; ++i) rows[i] = together.data() + i * stride;
+  prefilter(kCount, viewpoints, above, visible, rows, scratch);
   for (std::size_t i = 0; i < kCount; ++i) {
-    prefilter(1, viewpoints + i, above + i, visible + i, alone.data(), alone.size(), scratch);
+    float* out = alone.data();
+    prefilter(1, viewpoints + i, above + i, visible + i, &out, scratch);
     EXPECT_TRUE(std::equal(alone.begin(), alone.end(), together.begin() + static_cast<std::ptrdiff_t>(i * stride))) << i;
     for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(together[i * stride + prefilter.size() + k], -7.0f);
   }
