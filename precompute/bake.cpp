@@ -4,7 +4,9 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <mutex>
+#include <numbers>
 #include <string>
 
 #include "assets/error.h"
@@ -15,6 +17,7 @@
 #include "precompute/embree/ray_scene.h"
 #include "precompute/parallel.h"
 #include "precompute/ssdf/ssdf.h"
+#include "precompute/visibility/adaptive_visibility.h"
 #include "precompute/visibility/fractions.h"
 #include "precompute/visibility/octahedral_grid.h"
 #include "precompute/visibility/viewpoints.h"
@@ -52,6 +55,19 @@ void requireValid(const BakeSettings& settings) {
   if (!std::isfinite(settings.bytesPerVertex)) throw usageError("bytes a vertex", "are not a number", "use 104");
   const int bits = settings.functionBits;
   if (bits != 0 && bits != 4 && bits != 8 && bits != 16) throw usageError("function bits", "are none of 0, 4, 8 and 16", "use 0");
+}
+
+/// A promise that the finest texels cannot keep is refused.
+void requireLeastOccluder(const BakeSettings& settings) {
+  constexpr double kDegrees = 180.0 / std::numbers::pi;
+  const double degrees = kDegrees * static_cast<double>(settings.leastOccluder);
+  if (!(degrees >= 0.0 && degrees <= 90.0)) throw usageError("least occluder", "is out of range", "give 0 (off) to 90 degrees");
+  if (degrees == 0.0) return;
+  const double least = 2.0 * kDegrees * coveringRadius(settings.samplingResolution);
+  if (degrees >= least) return;
+  char remedy[96];
+  std::snprintf(remedy, sizeof remedy, "give at least %.3f degrees, or a larger sample resolution", std::ceil(1000.0 * least) / 1000.0);
+  throw usageError("least occluder", "is narrower than " + std::to_string(settings.samplingResolution) + " texels a side are sure to meet", remedy);
 }
 
 /// What the first stage leaves behind for every vertex of the scene.
@@ -133,6 +149,7 @@ TransferFacts factsOf(const BakeSettings& settings, const BakeReport& report) {
   TransferFacts facts{
       {"settings.resolution", settings.resolution},
       {"settings.sample_resolution", settings.samplingResolution},
+      {"settings.least_occluder", static_cast<double>(settings.leastOccluder)},
       {"settings.terms", settings.terms},
       {"settings.directions", settings.directionCount},
       {"settings.direction_sharpness", static_cast<double>(settings.directionSharpness)},
@@ -165,6 +182,7 @@ BakeSettings resolvedSettings(const BakeSettings& given) {
     for (int i = 0; i < 2 && 2 * settings.samplingResolution <= 256; ++i) settings.samplingResolution *= 2;
   }
   requireValid(settings);
+  requireLeastOccluder(settings);
   return settings;
 }
 

@@ -143,6 +143,7 @@ void bakeClustered(const RayScene& rays, const std::vector<Viewpoint>& viewpoint
   const TransferRows::Layout layout{.resolution = settings.resolution,
                               .samplingResolution = settings.samplingResolution,
                               .clamp = joint ? kJointClamp : kMaxDistance,
+                              .leastOccluder = settings.leastOccluder,
                               .levels = joint ? kLevels : std::vector<VisibilityLevel>{},
                               .directions = transfer.directions,
                               .directionSharpness = transfer.directionSharpness};

@@ -41,11 +41,14 @@ std::size_t besideCentre(std::size_t texel, std::size_t steps, std::size_t corne
 
 }  // namespace
 
-AdaptiveSphere::AdaptiveSphere(int coarse, int sampling) {
+AdaptiveSphere::AdaptiveSphere(int coarse, int sampling, double leastOccluder) {
   if (coarse < 8 || coarse % 8 != 0) throw std::invalid_argument("coarse resolution: not a multiple of 8");
   levels.emplace_back(coarse);
   while (levels.back().resolution < sampling) levels.push_back(SphereBoards::finer(levels.back()));
   if (levels.back().resolution != sampling) throw std::invalid_argument("sampling resolution: not the coarse one times a power of two");
+  if (leastOccluder == 0.0) return;
+  while (first < levels.size() && !(coveringRadius(levels[first].resolution) <= 0.5 * leastOccluder)) ++first;
+  if (first == levels.size()) throw std::invalid_argument("least occluder: too small for the sampling resolution");
 }
 
 AdaptiveVisibility::AdaptiveVisibility(const RayScene& rays, const AdaptiveSphere& sphere)
@@ -87,8 +90,8 @@ std::uint64_t AdaptiveVisibility::operator()(const Viewpoint& viewpoint) {
 
 void AdaptiveVisibility::traceSide(glm::vec3 origin) {
   packet_.setOrigin(origin);
-  traceAll(0);
-  for (std::size_t level = 1; level < maps_.size(); ++level) {
+  traceAll(sphere_.first);
+  for (std::size_t level = sphere_.first + 1; level < maps_.size(); ++level) {
     inherit(level);
     // Every other level is enough: following an edge over two texels costs fewer rays than tracing it at one level more.
     if ((maps_.size() - 1 - level) % 2 == 0) refine(level);
@@ -271,15 +274,19 @@ void AdaptiveVisibility::at(int resolution, TexelBits& above, TexelBits& visible
   found->toTexels(map.side, above);
   auto bits = map.visible;
   const auto steps = maps_.size() - 1 - level;
+  const bool unknown = level < sphere_.first;
   for (std::size_t b = 0; steps > 0 && b < bits.size(); ++b) {
     const auto asked = bothSides_ ? ~Board{0} : map.side[b];
     // Of one kind throughout, at both resolutions: most boards.
-    Board any = bits[b] & asked, all = bits[b] | ~asked;
+    Board any = unknown ? 0 : bits[b] & asked, all = unknown ? ~Board{0} : bits[b] | ~asked;
     for (std::size_t f = b << 2 * steps; f < (b + 1) << 2 * steps; ++f) {
       any |= finest.visible[f];
       all &= finest.visible[f] | (bothSides_ ? Board{0} : ~finest.side[f]);
     }
-    if (any == 0 || all == ~Board{0}) continue;
+    if (any == 0 || all == ~Board{0}) {
+      if (unknown) bits[b] = any != 0 ? asked : 0;
+      continue;
+    }
     for (auto left = asked; left != 0; left &= left - 1) {
       const auto bit = static_cast<std::size_t>(std::countr_zero(left));
       const bool sees = (bits[b] >> bit & 1) != 0;
@@ -318,12 +325,6 @@ double coveringRadius(int resolution) {
     }
   }
   return std::asin(worst);
-}
-
-int conservativeCoarse(double angle) {
-  for (int resolution = 16; resolution <= 4096; resolution *= 2)
-    if (coveringRadius(resolution) <= 0.5 * angle) return resolution;
-  throw std::invalid_argument("angle: too small");
 }
 
 }  // namespace chiaro
