@@ -54,13 +54,13 @@ Topmost keepAbove(Coordinates<const float> source, std::size_t pointCount, glm::
       index += static_cast<float>(kWidth<Vector>);
     }
     // Whatever the width: of those as high the first.
-    float best = most[0], first = at[0];
-    for (int lane = 1; lane < kWidth<Vector>; ++lane) {
-      if (most[lane] < best || (!(most[lane] > best) && at[lane] > first)) continue;
-      best = most[lane];
-      first = at[lane];
-    }
-    const auto rival = static_cast<std::size_t>(first);
+    float best = most[0];
+    for (int lane = 1; lane < kWidth<Vector>; ++lane) best = most[lane] > best ? most[lane] : best;
+    alignas(64) float places[kWidth<Vector>];
+    storeVector(places, at);
+    unsigned highest = trueElements<Vector>(most >= Vector{} + best);
+    auto rival = static_cast<std::size_t>(places[__builtin_ctz(highest)]);
+    while ((highest &= highest - 1) != 0) rival = std::min(rival, static_cast<std::size_t>(places[__builtin_ctz(highest)]));
     const float half = reach, rivalU = x[rival] - z[rival], rivalV = y[rival] - z[rival];
     // A hair more, so that no rounding drops one that is as near.
     const Vector top = Vector{} + (best - 1e-6f);
@@ -74,7 +74,6 @@ Topmost keepAbove(Coordinates<const float> source, std::size_t pointCount, glm::
         bits |= trueElements<Vector>(loadVector<Vector>(value + i + k) + rise >= top) << k;
       }
       if (count - i < 8) bits &= (1u << (count - i)) - 1u;
-      if (bits == 0) continue;
       storePacked<Vector>(x + i, bits, toX + kept);
       storePacked<Vector>(y + i, bits, toY + kept);
       storePacked<Vector>(z + i, bits, toZ + kept);
@@ -297,7 +296,7 @@ SsdfTransform::SsdfTransform(const OctahedralGrid& sampling, const OctahedralGri
       clampChord_(2.0f * std::sin(0.5f * clamp)),
       // A storage texel is the sampling one that holds it or touches its centre.
       slack_(2.0f * kLongestStep / static_cast<float>(sampling.resolution)),
-      clearOfTile_(3.0f * kLongestStep / static_cast<float>(storage.resolution) + slack_) {
+      clear_(kLongestStep / static_cast<float>(storage.resolution) + slack_) {
   std::size_t depth = 1;
   for (int side = storage.resolution; side > FaceTree::kSide; side /= 2) ++depth;
   kept_.resize(depth + 1);
@@ -314,11 +313,11 @@ unsigned SsdfTransform::seenInTile(std::size_t tile, const float* chord2, const 
   const unsigned below = signal.doubleSided ? 0u : static_cast<std::uint16_t>(~signal.above[tile]);
   if (below == 0) return seen;
   const std::size_t first = 16 * tile;
-  if (below == 0xffffu) {
-    float least = 16.0f;
-    for (int t = 0; t < 16; ++t) least = std::min(least, chord2[FaceTree::kSide * (t / 4) + t % 4]);
-    // No edge is near: one texel says what all of them see.
-    if (least > clearOfTile_ * clearOfTile_) return sees(first, signal) ? 0xffffu : 0u;
+  float least = 16.0f;
+  for (int t = 0; t < 16; ++t) least = std::min(least, chord2[FaceTree::kSide * (t / 4) + t % 4]);
+  if (least > clear_ * clear_) {
+    const auto any = static_cast<std::size_t>(std::countr_one(below) % 16);  // one that is above, if there is
+    return sees(first + any, signal) ? 0xffffu : 0u;
   }
   alignas(64) float x[16], y[16], z[16];
   foldTile(storage_.x.data() + first, storage_.y.data() + first, storage_.z.data() + first, signal.normal, x, y, z);
@@ -397,11 +396,10 @@ void SsdfTransform::visit(const FaceTree::Square& square, const OctahedralFace& 
     kept.count = top.kept;
     points = &kept;
     if (square.whole && kind == Kind::mixed) {
-      const float nearest = std::sqrt(std::max(2.0f - 2.0f * top.value / square.length - 1e-5f, 0.0f)), clear = 2.0f * square.radius + slack_;
+      const float nearest = std::sqrt(std::max(2.0f - 2.0f * top.value / square.length - 1e-5f, 0.0f)), clear = square.radius + slack_;
       const auto first = static_cast<std::size_t>(square.row * storage_.resolution + square.column);
       // What is below the horizon has to ask its mirror images, so that it pays to ask once for all of a square.
-      const bool below = !signal.doubleSided && !texelBit(signal.above.data(), storage_.tiled[first]);
-      if (nearest > clear && below) kind = sees(storage_.tiled[first], signal) ? Kind::seen : Kind::hidden;
+      if (nearest > clear) kind = sees(storage_.tiled[first], signal) ? Kind::seen : Kind::hidden;
       if (clampChord_ > slack_ && nearest > clampChord_ + square.radius) {
         const float value = sees(storage_.tiled[first], signal) ? clamp_ : -clamp_;
         for (int y = 0; y < square.side; ++y)

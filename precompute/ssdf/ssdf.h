@@ -63,7 +63,7 @@ class SsdfTransform {
   FaceTree tree_;
   float clamp_, clampChord_;
   float slack_;         ///< chord; texels that differ have a boundary point so near to the way between them
-  float clearOfTile_;   ///< chord; a 4x4 tile with no boundary point so near is all seen or all hidden
+  float clear_;         ///< chord; where none of a tile's texels has a boundary point so near, all of them see the same
   std::vector<glm::vec3> boundary_;
   Points all_;                ///< in the frame of one face
   std::vector<Points> kept_;  ///< by depth
