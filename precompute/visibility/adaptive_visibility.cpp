@@ -207,62 +207,67 @@ void AdaptiveVisibility::refine(std::size_t level) {
   }
   if (finest)
     for (std::size_t b = 0; b < boards.boardCount; ++b) {
-      horizon_[b] = map.side[b] == 0 ? 0 : map.side[b] & boards.around4(otherSide_.data(), b);
+      horizon_[b] = map.side[b] == 0 || !boards.anyAround4(otherSide_.data(), b) ? 0 : map.side[b] & boards.around4(otherSide_.data(), b);
       whole_[b] = 0;
     }
-  for (bool first = true; !round_.empty(); first = false) {
-    next_.clear();
-    for (const auto b : round_) {
-      const auto seen = map.seen[b], hidden = map.hidden[b];
-      // A pair that differs with both traced is settled; most boards are of one kind, and so are those about them.
-      Board pending = map.side[b] & ~(seen | hidden);
-      if (seen != 0) pending |= seen & boards.around4(map.hidden.data(), b);
-      if (hidden != 0) pending |= hidden & boards.around4(map.seen.data(), b);
-      if (finest) pending |= horizon_[b] & (first ? SphereBoards::sparse() : whole_[b] != 0 ? ~Board{0} : Board{0});
-      pending &= ~map.traced[b];
-      if (pending == 0) continue;
-      map.traced[b] |= pending;
-      for (std::size_t k = 0; k < 4; ++k) {
-        auto which = static_cast<unsigned>(pending >> 16 * k & 0xffffu);
-        if (std::popcount(which) >= kOwnPacket) {
-          traceTile(level, 4 * std::size_t{b} + k, which);
-          continue;
-        }
-        for (; which != 0; which &= which - 1) {
-          const auto texel = 64 * std::size_t{b} + 16 * k + static_cast<std::size_t>(std::countr_zero(which));
-          x_[gathered_] = boards.x[texel];
-          y_[gathered_] = boards.y[texel];
-          z_[gathered_] = boards.z[texel];
-          texel_[gathered_] = static_cast<std::uint32_t>(texel);
-          if (++gathered_ == 16) traceGathered(level);
-        }
+  for (bool first = true; !round_.empty(); first = false) refineRound(level, first);
+}
+
+void AdaptiveVisibility::refineRound(std::size_t level, bool first) {
+  auto& map = maps_[level];
+  const auto& boards = sphere_.levels[level];
+  const bool finest = level + 1 == maps_.size();
+  next_.clear();
+  for (const auto b : round_) {
+    const auto seen = map.seen[b], hidden = map.hidden[b];
+    // A pair that differs with both traced is settled; most boards are of one kind, and so are those about them.
+    Board pending = map.side[b] & ~(seen | hidden);
+    if (seen != 0 && boards.anyAround4(map.hidden.data(), b)) pending |= seen & boards.around4(map.hidden.data(), b);
+    if (hidden != 0 && boards.anyAround4(map.seen.data(), b)) pending |= hidden & boards.around4(map.seen.data(), b);
+    if (finest) pending |= horizon_[b] & (first ? SphereBoards::sparse() : whole_[b] != 0 ? ~Board{0} : Board{0});
+    pending &= ~map.traced[b];
+    if (pending == 0) continue;
+    map.traced[b] |= pending;
+    for (std::size_t k = 0; k < 4; ++k) {
+      auto which = static_cast<unsigned>(pending >> 16 * k & 0xffffu);
+      if (std::popcount(which) >= kOwnPacket) {
+        traceTile(level, 4 * std::size_t{b} + k, which);
+        continue;
+      }
+      for (; which != 0; which &= which - 1) {
+        const auto texel = 64 * std::size_t{b} + 16 * k + static_cast<std::size_t>(std::countr_zero(which));
+        x_[gathered_] = boards.x[texel];
+        y_[gathered_] = boards.y[texel];
+        z_[gathered_] = boards.z[texel];
+        texel_[gathered_] = static_cast<std::uint32_t>(texel);
+        if (++gathered_ == 16) traceGathered(level);
       }
     }
-    traceGathered(level);
-    // Only beside a value that changed can there be a new pair that differs.
-    const auto count = next_.size();
-    for (std::size_t i = 0; i < count; ++i) {
-      const std::size_t b = next_[i];
-      const auto changed = changed_[b];
-      changed_[b] = 0;
-      // Where there is something low on the horizon there is more.
-      const bool low = finest && (changed & horizon_[b]) != 0 && whole_[b] != 2;
-      if (low) {
-        whole_[b] = 2;
-        for (const auto other : boards.beside[b]) {
-          if (horizon_[other] == 0 || whole_[other] != 0) continue;
-          whole_[other] = 1;
-          mark(other);
-        }
-      }
-      constexpr Board kRim = SphereBoards::rim();
-      if ((changed & kRim) == 0) continue;
-      for (const auto other : boards.beside[b]) mark(other);
-    }
-    std::ranges::sort(next_);
-    for (const auto b : next_) marked_[b] = 0;
-    std::swap(round_, next_);
   }
+  traceGathered(level);
+  // Only beside a value that changed can there be a new pair that differs.
+  const auto count = next_.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t b = next_[i];
+    const auto changed = changed_[b];
+    changed_[b] = 0;
+    // Where there is something low on the horizon there is more.
+    const bool low = finest && (changed & horizon_[b]) != 0 && whole_[b] != 2;
+    if (low) {
+      whole_[b] = 2;
+      for (const auto other : boards.beside[b]) {
+        if (horizon_[other] == 0 || whole_[other] != 0) continue;
+        whole_[other] = 1;
+        mark(other);
+      }
+    }
+    constexpr Board kRim = SphereBoards::rim();
+    if ((changed & kRim) == 0) continue;
+    for (const auto other : boards.beside[b]) mark(other);
+  }
+  std::ranges::sort(next_);
+  for (const auto b : next_) marked_[b] = 0;
+  std::swap(round_, next_);
 }
 
 void AdaptiveVisibility::at(int resolution, TexelBits& above, TexelBits& visible) const {

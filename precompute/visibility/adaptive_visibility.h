@@ -63,6 +63,7 @@ class AdaptiveVisibility {
   void traceAll(std::size_t level);
   void inherit(std::size_t level);
   void refine(std::size_t level);
+  void refineRound(std::size_t level, bool first);
   void traceTile(std::size_t level, std::size_t tile, unsigned which);
   void traceGathered(std::size_t level);
   void settle(std::size_t level, std::size_t texel, bool hit);
