@@ -1,7 +1,10 @@
 #include "precompute/bake.h"
 
 #include <chrono>
+#include <cmath>
+#include <cstdio>
 #include <memory>
+#include <numbers>
 #include <string>
 #include <utility>
 
@@ -10,6 +13,7 @@
 #include "precompute/bake_pca.h"
 #include "precompute/bake_task.h"
 #include "precompute/journal/fingerprint.h"
+#include "precompute/visibility/adaptive_visibility.h"
 #include "precompute/visibility/fractions.h"
 
 namespace chiaro {
@@ -60,11 +64,25 @@ std::unique_ptr<Journal> openJournal(const Scene& scene, const BakeSettings& set
   return journal;
 }
 
+/// A promise that the finest texels cannot keep is refused.
+void requireLeastOccluder(const BakeSettings& settings) {
+  constexpr double kDegrees = 180.0 / std::numbers::pi;
+  const double degrees = kDegrees * static_cast<double>(settings.leastOccluder);
+  if (!(degrees >= 0.0 && degrees <= 90.0)) throw usageError("least occluder", "is out of range", "give 0 (off) to 90 degrees");
+  if (degrees == 0.0) return;
+  const double least = 2.0 * kDegrees * coveringRadius(settings.samplingResolution);
+  if (degrees >= least) return;
+  char remedy[96];
+  std::snprintf(remedy, sizeof remedy, "give at least %.3f degrees, or a larger sample resolution", std::ceil(1000.0 * least) / 1000.0);
+  throw usageError("least occluder", "is narrower than " + std::to_string(settings.samplingResolution) + " texels a side are sure to meet", remedy);
+}
+
 /// What the file says about its making. No times: the same bake gives the same bytes.
 TransferFacts factsOf(const BakeSettings& settings, const BakeReport& report) {
   TransferFacts facts{
       {"settings.resolution", settings.resolution},
       {"settings.sample_resolution", settings.samplingResolution},
+      {"settings.least_occluder", static_cast<double>(settings.leastOccluder)},
       {"settings.terms", settings.terms},
       {"settings.directions", settings.directionCount},
       {"settings.direction_sharpness", static_cast<double>(settings.directionSharpness)},
@@ -98,6 +116,7 @@ BakeSettings resolvedSettings(const BakeSettings& given) {
     for (int i = 0; i < 2 && 2 * settings.samplingResolution <= 256; ++i) settings.samplingResolution *= 2;
   }
   requireValid(settings);
+  requireLeastOccluder(settings);
   return settings;
 }
 

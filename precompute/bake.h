@@ -26,6 +26,9 @@ struct BakeSettings {
   /// Of what is traced where visibility changes: `resolution` times a power of two; 0: four times `resolution`, at most 256. The pca form
   /// traces `resolution`.
   int samplingResolution = 0;
+  /// Radians, at most pi / 2: tracing starts fine enough that no occluder of this angular diameter is missed, however many rays it takes;
+  /// 0: what falls between the coarse texels altogether may be. Must be wider than what samplingResolution itself may miss.
+  float leastOccluder = 0.0f;
   int terms = 0;                    ///< weights a lookup fetches at most, 1..256 (fewer where fewer do); 0: 24, or 48 in the pca form
   int clusters = 0;                 ///< clustered forms: 1..4096; 0: by the number of vertices
   int functions = 0;                ///< clustered forms: that all clusters share, 1..1024; 0: by the number of vertices

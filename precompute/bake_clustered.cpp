@@ -170,6 +170,7 @@ void bakeClustered(const BakeTask& task, BakedScene& baked, BakeReport& report) 
   const TransferRows::Layout layout{.resolution = settings.resolution,
                               .samplingResolution = settings.samplingResolution,
                               .clamp = joint ? kJointClamp : kMaxDistance,
+                              .leastOccluder = settings.leastOccluder,
                               .levels = joint ? kLevels : std::vector<VisibilityLevel>{},
                               .directions = transfer.directions,
                               .directionSharpness = transfer.directionSharpness};

@@ -20,7 +20,7 @@ void lap(Clock::time_point& from, double& sum) {
   from = now;
 }
 
-/// The map that is traced everywhere: the stored one, or one of about 64 texels a side below it.
+/// The coarsest map: the stored one, or one of about 64 texels a side below it. Traced everywhere unless narrower things are asked for.
 int coarseBelow(int resolution) {
   while (resolution > 64 && resolution % 16 == 0) resolution /= 2;
   return resolution;
@@ -58,7 +58,7 @@ TransferRows::TransferRows(const RayScene& rays, const std::vector<Viewpoint>& v
       layout_(layout),
       stored_(layout.resolution),
       sampled_(layout.samplingResolution),
-      sphere_(coarseBelow(layout.resolution), layout.samplingResolution),
+      sphere_(coarseBelow(layout.resolution), layout.samplingResolution, layout.leastOccluder),
       prefilter_(sampled_, layout.levels),
       fractions_(stored_, layout.directions, layout.directionSharpness) {}
 

@@ -30,6 +30,7 @@ class TransferRows {
     int resolution = 64;          ///< of the SSDF
     int samplingResolution = 64;  ///< of what is traced: `resolution` times a power of two
     float clamp = 0.0f;           ///< radians, at most pi / 2
+    float leastOccluder = 0.0f;   ///< radians; no occluder as wide is missed; 0: no such promise (AdaptiveSphere)
     std::vector<VisibilityLevel> levels;
     std::vector<glm::vec3> directions;
     float directionSharpness = 0.0f;

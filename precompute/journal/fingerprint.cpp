@@ -63,6 +63,7 @@ Fingerprint fingerprintOf(const Scene& scene, const BakeSettings& settings, cons
   hash.add(settings.compression);
   hash.add(settings.resolution);
   hash.add(settings.samplingResolution);
+  hash.add(settings.leastOccluder);
   hash.add(settings.directionCount);
   hash.add(settings.directionSharpness);
   if (settings.compression != Compression::pca) {

@@ -68,6 +68,7 @@ std::string bakeJson(const BakeRun& run, const BakeReport& report) {
        {{"resolution", run.settings.resolution},
         {"compression", nameOf(run.settings.compression)},
         {"sample_resolution", run.settings.samplingResolution},
+        {"least_occluder_deg", static_cast<double>(run.settings.leastOccluder) * 180.0 / std::numbers::pi},
         {"terms", run.settings.terms},
         {"clusters", run.settings.clusters},
         {"functions", run.settings.functions},

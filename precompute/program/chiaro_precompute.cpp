@@ -50,6 +50,7 @@ struct Options {
   double creaseAngleDegrees = 60.0;
   double memoryLimitMib = 0.0;
   bool fresh = false;
+  double leastOccluderDegrees = 0.0;
   bool quiet = false;
   bool verbose = false;
 };
@@ -76,6 +77,9 @@ void declare(CLI::App& app, Options& options) {
   shown(app.add_option("--sample-resolution", settings.samplingResolution,
                        "Texels a side traced where visibility changes: --resolution times a power of two; 0 is four times, at most 256"),
         "N");
+  shown(app.add_option("--least-occluder", options.leastOccluderDegrees,
+                       "Never miss an occluder of this many degrees, at the cost of more rays; 0 promises nothing"),
+        "A");
   shown(app.add_option("--terms", settings.terms, "Weights a lookup fetches at most, 1 to 256; 0 is 24, or 48 with pca"), "K");
   shown(app.add_option("--directions", settings.directionCount, "Broad lobes a vertex, 8 to 64, a multiple of 4"), "N");
   shown(app.add_option("--crease-angle-deg", options.creaseAngleDegrees,
@@ -126,6 +130,8 @@ void finish(Options& options) {
   inRange("--memory-limit", options.memoryLimitMib, 0, 1e9);
   if (settings.resolution % 4 != 0) throw usageError("--resolution", "is not a multiple of 4", "use 32, 64, 128, ...");
   if (settings.directionCount % 4 != 0) throw usageError("--directions", "is not a multiple of 4", "use 16, 32, 64, ...");
+  inRange("--least-occluder", options.leastOccluderDegrees, 0, 90);
+  settings.leastOccluder = static_cast<float>(options.leastOccluderDegrees * std::numbers::pi / 180.0);
   settings = resolvedSettings(settings);
   settings.creaseAngle = static_cast<float>(options.creaseAngleDegrees * std::numbers::pi / 180.0);
 

@@ -1,11 +1,11 @@
 #pragma once
 /// Spherical signed distance functions from visibility bits (Wang et al. 2009, section 4).
 
-#include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <vector>
 
+#include "precompute/ssdf/face_tree.h"
 #include "precompute/visibility/octahedral_grid.h"
 #include "precompute/visibility/visibility.h"
 
@@ -35,58 +35,40 @@ class SsdfTransform {
   /// its centre or touch it (AdaptiveVisibility::at, or the same bits where the resolutions are). Of a one-sided vertex the bits
   /// below the horizon are not read. distances: #texels of `storage`, row-major.
   ///
-  /// Groups of texels are halved from a quarter of the map down to 4x4. A group keeps those of its parent's points that may be
-  /// nearest to one of its texels. First by the triangle inequality of chords: those within the smallest chord to its centre plus twice its
-  /// radius. Then, as the texels lie in the convex hull of the four in its corners (the map's faces are gnomonic) and a point
-  /// is nearer than another in a half-space: none that is farther than one other point from all four.
+  /// Each of the map's faces is halved down to squares of 8 x 8 texels (FaceTree), on which a point is a plane. A square keeps those of its
+  /// parent's points whose plane is above that of the point nearest to its centre anywhere in it.
   void operator()(glm::vec3 normal, bool doubleSided, const TexelBits& above, const TexelBits& visible, const TexelBits& storedAbove,
                   const TexelBits& stored, float* distances);
 
  private:
   struct Points {
     AlignedFloats x, y, z;
-    std::size_t count = 0;
+    std::size_t count = 0;  ///< the last one is repeated up to a multiple of eight
     std::size_t capacity = 0;
     void reserve(std::size_t points);
   };
-  struct Group {
-    glm::vec3 center{0.0f};
-    float radius = 0.0f;            ///< largest chord to one of its texels
-    std::uint32_t firstTile = 0;    ///< into tiles_
-    std::uint32_t tileCount = 0;
-    std::uint32_t firstChild = 0;   ///< into groups_; children are consecutive, none if it is one tile
-    std::uint32_t childCount = 0;
-  };
-  struct Tile {
-    std::uint32_t number = 0;
-    std::uint32_t rowMajor = 0;  ///< of its first texel
-  };
   struct Signal;
-  void addGroups(const std::vector<std::array<int, 3>>& squares);
-  enum class Kind { mixed, seen, hidden };  ///< of all texels of a group, where that is known
-  void visit(const Group& group, const Points& from, std::size_t depth, Kind kind, const Signal& signal);
-  void visitTile(const Group& group, const Points& points, bool folded, Kind kind, const Signal& signal) const;
-  /// No edge is near: one texel says what all of them see.
-  bool seesIn(const Group& group, const Signal& signal) const;
-  void fill(const Group& group, const Signal& signal) const;
-  /// Returns the smallest chord to the centre.
-  float keepNear(const Points& from, glm::vec3 center, float radius, float reach, Points& to);
-  void keepUndominated(Points& points, const glm::vec3* corners);
+  enum class Kind { mixed, seen, hidden };  ///< of all texels of a square, where that is known
+  void visit(const FaceTree::Square& square, const OctahedralFace& face, const Points& from, std::size_t depth, Kind kind,
+             const Signal& signal);
+  void visitLeaf(const FaceTree::Square& square, const OctahedralFace& face, const Points& points, Kind kind, const Signal& signal);
+  bool sees(std::size_t texel, const Signal& signal) const;
+  /// chord2: of its first texel, in a leaf.
+  unsigned seenInTile(std::size_t tile, const float* chord2, const Signal& signal) const;
+  /// A byte for each row.
+  void seenInLeaf(const FaceTree::Leaf& leaf, const float* chord2, const Signal& signal, std::uint8_t* seen) const;
 
   const OctahedralGrid& sampling_;
   const OctahedralGrid& storage_;
+  FaceTree tree_;
   float clamp_, clampChord_;
-  float slack_;                        ///< chord; texels that differ have a boundary point so near to the way between them
-  std::vector<Group> groups_;
-  std::uint32_t rootCount_ = 0;
-  std::vector<std::array<glm::vec3, 4>> corners_;  ///< by group; directions of the texels in its corners
-  bool convex_;                        ///< all texels of a group lie in the hull of its corners
-  std::vector<Tile> tiles_;            ///< of each group
+  float slack_;         ///< chord; texels that differ have a boundary point so near to the way between them
+  float clear_;         ///< chord; where none of a tile's texels has a boundary point so near, all of them see the same
   std::vector<glm::vec3> boundary_;
-  Points all_;
-  std::vector<Points> kept_;           ///< by depth
-  AlignedFloats chord2_;               ///< to the centre, or to four corners one after the other
-  std::size_t chordCapacity_ = 0;
+  Points all_;                ///< in the frame of one face
+  std::vector<Points> kept_;  ///< by depth
+  AlignedFloats scratch_;     ///< values above a square's centre, or planes
+  std::size_t scratchCapacity_ = 0;
 };
 
 }  // namespace chiaro

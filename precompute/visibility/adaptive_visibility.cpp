@@ -41,11 +41,14 @@ std::size_t besideCentre(std::size_t texel, std::size_t steps, std::size_t corne
 
 }  // namespace
 
-AdaptiveSphere::AdaptiveSphere(int coarse, int sampling) {
+AdaptiveSphere::AdaptiveSphere(int coarse, int sampling, double leastOccluder) {
   if (coarse < 8 || coarse % 8 != 0) throw std::invalid_argument("coarse resolution: not a multiple of 8");
   levels.emplace_back(coarse);
   while (levels.back().resolution < sampling) levels.push_back(SphereBoards::finer(levels.back()));
   if (levels.back().resolution != sampling) throw std::invalid_argument("sampling resolution: not the coarse one times a power of two");
+  if (leastOccluder == 0.0) return;
+  while (first < levels.size() && !(coveringRadius(levels[first].resolution) <= 0.5 * leastOccluder)) ++first;
+  if (first == levels.size()) throw std::invalid_argument("least occluder: too small for the sampling resolution");
 }
 
 AdaptiveVisibility::AdaptiveVisibility(const RayScene& rays, const AdaptiveSphere& sphere)
@@ -87,8 +90,8 @@ std::uint64_t AdaptiveVisibility::operator()(const Viewpoint& viewpoint) {
 
 void AdaptiveVisibility::traceSide(glm::vec3 origin) {
   packet_.setOrigin(origin);
-  traceAll(0);
-  for (std::size_t level = 1; level < maps_.size(); ++level) {
+  traceAll(sphere_.first);
+  for (std::size_t level = sphere_.first + 1; level < maps_.size(); ++level) {
     inherit(level);
     // Every other level is enough: following an edge over two texels costs fewer rays than tracing it at one level more.
     if ((maps_.size() - 1 - level) % 2 == 0) refine(level);
@@ -204,62 +207,67 @@ void AdaptiveVisibility::refine(std::size_t level) {
   }
   if (finest)
     for (std::size_t b = 0; b < boards.boardCount; ++b) {
-      horizon_[b] = map.side[b] == 0 ? 0 : map.side[b] & boards.around4(otherSide_.data(), b);
+      horizon_[b] = map.side[b] == 0 || !boards.anyAround4(otherSide_.data(), b) ? 0 : map.side[b] & boards.around4(otherSide_.data(), b);
       whole_[b] = 0;
     }
-  for (bool first = true; !round_.empty(); first = false) {
-    next_.clear();
-    for (const auto b : round_) {
-      const auto seen = map.seen[b], hidden = map.hidden[b];
-      // A pair that differs with both traced is settled; most boards are of one kind, and so are those about them.
-      Board pending = map.side[b] & ~(seen | hidden);
-      if (seen != 0) pending |= seen & boards.around4(map.hidden.data(), b);
-      if (hidden != 0) pending |= hidden & boards.around4(map.seen.data(), b);
-      if (finest) pending |= horizon_[b] & (first ? SphereBoards::sparse() : whole_[b] != 0 ? ~Board{0} : Board{0});
-      pending &= ~map.traced[b];
-      if (pending == 0) continue;
-      map.traced[b] |= pending;
-      for (std::size_t k = 0; k < 4; ++k) {
-        auto which = static_cast<unsigned>(pending >> 16 * k & 0xffffu);
-        if (std::popcount(which) >= kOwnPacket) {
-          traceTile(level, 4 * std::size_t{b} + k, which);
-          continue;
-        }
-        for (; which != 0; which &= which - 1) {
-          const auto texel = 64 * std::size_t{b} + 16 * k + static_cast<std::size_t>(std::countr_zero(which));
-          x_[gathered_] = boards.x[texel];
-          y_[gathered_] = boards.y[texel];
-          z_[gathered_] = boards.z[texel];
-          texel_[gathered_] = static_cast<std::uint32_t>(texel);
-          if (++gathered_ == 16) traceGathered(level);
-        }
+  for (bool first = true; !round_.empty(); first = false) refineRound(level, first);
+}
+
+void AdaptiveVisibility::refineRound(std::size_t level, bool first) {
+  auto& map = maps_[level];
+  const auto& boards = sphere_.levels[level];
+  const bool finest = level + 1 == maps_.size();
+  next_.clear();
+  for (const auto b : round_) {
+    const auto seen = map.seen[b], hidden = map.hidden[b];
+    // A pair that differs with both traced is settled; most boards are of one kind, and so are those about them.
+    Board pending = map.side[b] & ~(seen | hidden);
+    if (seen != 0 && boards.anyAround4(map.hidden.data(), b)) pending |= seen & boards.around4(map.hidden.data(), b);
+    if (hidden != 0 && boards.anyAround4(map.seen.data(), b)) pending |= hidden & boards.around4(map.seen.data(), b);
+    if (finest) pending |= horizon_[b] & (first ? SphereBoards::sparse() : whole_[b] != 0 ? ~Board{0} : Board{0});
+    pending &= ~map.traced[b];
+    if (pending == 0) continue;
+    map.traced[b] |= pending;
+    for (std::size_t k = 0; k < 4; ++k) {
+      auto which = static_cast<unsigned>(pending >> 16 * k & 0xffffu);
+      if (std::popcount(which) >= kOwnPacket) {
+        traceTile(level, 4 * std::size_t{b} + k, which);
+        continue;
+      }
+      for (; which != 0; which &= which - 1) {
+        const auto texel = 64 * std::size_t{b} + 16 * k + static_cast<std::size_t>(std::countr_zero(which));
+        x_[gathered_] = boards.x[texel];
+        y_[gathered_] = boards.y[texel];
+        z_[gathered_] = boards.z[texel];
+        texel_[gathered_] = static_cast<std::uint32_t>(texel);
+        if (++gathered_ == 16) traceGathered(level);
       }
     }
-    traceGathered(level);
-    // Only beside a value that changed can there be a new pair that differs.
-    const auto count = next_.size();
-    for (std::size_t i = 0; i < count; ++i) {
-      const std::size_t b = next_[i];
-      const auto changed = changed_[b];
-      changed_[b] = 0;
-      // Where there is something low on the horizon there is more.
-      const bool low = finest && (changed & horizon_[b]) != 0 && whole_[b] != 2;
-      if (low) {
-        whole_[b] = 2;
-        for (const auto other : boards.beside[b]) {
-          if (horizon_[other] == 0 || whole_[other] != 0) continue;
-          whole_[other] = 1;
-          mark(other);
-        }
-      }
-      constexpr Board kRim = SphereBoards::rim();
-      if ((changed & kRim) == 0) continue;
-      for (const auto other : boards.beside[b]) mark(other);
-    }
-    std::ranges::sort(next_);
-    for (const auto b : next_) marked_[b] = 0;
-    std::swap(round_, next_);
   }
+  traceGathered(level);
+  // Only beside a value that changed can there be a new pair that differs.
+  const auto count = next_.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t b = next_[i];
+    const auto changed = changed_[b];
+    changed_[b] = 0;
+    // Where there is something low on the horizon there is more.
+    const bool low = finest && (changed & horizon_[b]) != 0 && whole_[b] != 2;
+    if (low) {
+      whole_[b] = 2;
+      for (const auto other : boards.beside[b]) {
+        if (horizon_[other] == 0 || whole_[other] != 0) continue;
+        whole_[other] = 1;
+        mark(other);
+      }
+    }
+    constexpr Board kRim = SphereBoards::rim();
+    if ((changed & kRim) == 0) continue;
+    for (const auto other : boards.beside[b]) mark(other);
+  }
+  std::ranges::sort(next_);
+  for (const auto b : next_) marked_[b] = 0;
+  std::swap(round_, next_);
 }
 
 void AdaptiveVisibility::at(int resolution, TexelBits& above, TexelBits& visible) const {
@@ -271,15 +279,19 @@ void AdaptiveVisibility::at(int resolution, TexelBits& above, TexelBits& visible
   found->toTexels(map.side, above);
   auto bits = map.visible;
   const auto steps = maps_.size() - 1 - level;
+  const bool unknown = level < sphere_.first;
   for (std::size_t b = 0; steps > 0 && b < bits.size(); ++b) {
     const auto asked = bothSides_ ? ~Board{0} : map.side[b];
     // Of one kind throughout, at both resolutions: most boards.
-    Board any = bits[b] & asked, all = bits[b] | ~asked;
+    Board any = unknown ? 0 : bits[b] & asked, all = unknown ? ~Board{0} : bits[b] | ~asked;
     for (std::size_t f = b << 2 * steps; f < (b + 1) << 2 * steps; ++f) {
       any |= finest.visible[f];
       all &= finest.visible[f] | (bothSides_ ? Board{0} : ~finest.side[f]);
     }
-    if (any == 0 || all == ~Board{0}) continue;
+    if (any == 0 || all == ~Board{0}) {
+      if (unknown) bits[b] = any != 0 ? asked : 0;
+      continue;
+    }
     for (auto left = asked; left != 0; left &= left - 1) {
       const auto bit = static_cast<std::size_t>(std::countr_zero(left));
       const bool sees = (bits[b] >> bit & 1) != 0;
@@ -318,12 +330,6 @@ double coveringRadius(int resolution) {
     }
   }
   return std::asin(worst);
-}
-
-int conservativeCoarse(double angle) {
-  for (int resolution = 16; resolution <= 4096; resolution *= 2)
-    if (coveringRadius(resolution) <= 0.5 * angle) return resolution;
-  throw std::invalid_argument("angle: too small");
 }
 
 }  // namespace chiaro

@@ -13,21 +13,20 @@ namespace chiaro {
 
 /// The maps of every resolution from coarse to sampling; what is the same for every vertex and thread.
 struct AdaptiveSphere {
-  /// coarse: a multiple of 8; sampling: coarse times a power of two. Throws std::invalid_argument.
-  AdaptiveSphere(int coarse, int sampling);
+  /// coarse: a multiple of 8; sampling: coarse times a power of two. leastOccluder: radians, an angular diameter: no occluder so wide is
+  /// missed, and one partly below the horizon counts as wide as a disc that fits into what is above; 0 promises nothing, and tracing
+  /// starts at `coarse`. Throws std::invalid_argument, also where the sampling resolution cannot keep the promise.
+  AdaptiveSphere(int coarse, int sampling, double leastOccluder = 0.0);
 
   std::vector<SphereBoards> levels;  ///< coarse first
+  std::size_t first = 0;             ///< the level that is traced throughout; those before it only take from the sampling one
 };
 
 /// The largest angle from any direction to the nearest texel centre of a map, radians: a disc of that angular radius or more
 /// covers a centre wherever it is. resolution: even.
 double coveringRadius(int resolution);
 
-/// Conservative tracing: the least coarse resolution (a power of two, at least 16) at which no occluder as wide as `angle` (radians, its
-/// angular diameter) is missed. One that is partly below the horizon counts as wide as a disc that fits into what is above.
-int conservativeCoarse(double angle);
-
-/// One thread's. At the coarse level every direction above the horizon is traced. A finer texel starts with the value of its
+/// One thread's. At the first level every direction above the horizon is traced. A finer texel starts with the value of its
 /// parent (the one a level up that holds it) and is traced where that differs from one that shares an edge with it, or where its
 /// parent is below the horizon and the texels about the parent disagree; and where a traced value turns out to differ from one beside it,
 /// that one is traced too, until there is no more such pair. So every pair that differs has been traced, and a feature is followed
@@ -64,6 +63,7 @@ class AdaptiveVisibility {
   void traceAll(std::size_t level);
   void inherit(std::size_t level);
   void refine(std::size_t level);
+  void refineRound(std::size_t level, bool first);
   void traceTile(std::size_t level, std::size_t tile, unsigned which);
   void traceGathered(std::size_t level);
   void settle(std::size_t level, std::size_t texel, bool hit);

@@ -2,29 +2,13 @@
 
 #include <algorithm>
 
+#include "precompute/simd.h"
 #include "shaders/cpp/lobe.h"
 
 namespace chiaro {
 namespace {
 
 using Corner = std::array<std::uint16_t, 2>;  ///< column and row of a board
-
-// Columns and rows of a board.
-constexpr Board kColumn0 = 0x0000111100001111u, kColumn3 = 0x0000888800008888u, kColumn4 = 0x1111000011110000u,
-                kColumn7 = 0x8888000088880000u, kRow0 = 0x00000000000f000fu, kRow3 = 0x00000000f000f000u, kRow4 = 0x000f000f00000000u,
-                kRow7 = 0xf000f00000000000u;
-
-Board flipRows(Board b) {
-  b = std::rotl(b, 32);
-  b = (b & 0x0f0f0f0f0f0f0f0fu) << 4 | (b >> 4 & 0x0f0f0f0f0f0f0f0fu);
-  return (b & 0x00ff00ff00ff00ffu) << 8 | (b >> 8 & 0x00ff00ff00ff00ffu);
-}
-
-Board flipColumns(Board b) {
-  b = (b & 0x0000ffff0000ffffu) << 16 | (b >> 16 & 0x0000ffff0000ffffu);
-  b = (b & 0x3333333333333333u) << 2 | (b >> 2 & 0x3333333333333333u);
-  return (b & 0x5555555555555555u) << 1 | (b >> 1 & 0x5555555555555555u);
-}
 
 std::vector<Corner> rowsOfBoards(int perRow) {
   std::vector<Corner> result;
@@ -75,20 +59,6 @@ SphereBoards::SphereBoards(int side, const std::vector<Corner>& corners)
   }
 }
 
-Board SphereBoards::shifted(Board here, Board there, Side side, bool mirrored) {
-  switch (side) {
-    case right:
-      return (here >> 1 & ~(kColumn3 | kColumn7)) | (here >> 13 & kColumn3) | ((mirrored ? flipRows(there) : there << 19) & kColumn7);
-    case left:
-      return (here << 1 & ~(kColumn0 | kColumn4)) | (here << 13 & kColumn4) | ((mirrored ? flipRows(there) : there >> 19) & kColumn0);
-    case bottom:
-      return (here >> 4 & ~(kRow3 | kRow7)) | (here >> 20 & kRow3) | ((mirrored ? flipColumns(there) : there << 44) & kRow7);
-    case top:
-      return (here << 4 & ~(kRow0 | kRow4)) | (here << 20 & kRow4) | ((mirrored ? flipColumns(there) : there >> 44) & kRow0);
-  }
-  return 0;
-}
-
 Board SphereBoards::around8(const Board* bits, std::size_t b) const {
   const auto across = [&](std::size_t i) { return bits[i] | at(bits, i, left) | at(bits, i, right); };
   const auto here = across(b);
@@ -104,11 +74,18 @@ void SphereBoards::above(glm::vec3 normal, std::vector<Board>& bits) const {
       bits[b] = height > 0.0f ? ~Board{0} : Board{0};
       continue;
     }
-    const float *bx = x.data() + 64 * b, *by = y.data() + 64 * b, *bz = z.data() + 64 * b;
-    float dot[64];
-    for (int i = 0; i < 64; ++i) dot[i] = bx[i] * normal.x + by[i] * normal.y + bz[i] * normal.z;
+    const auto first = 64 * b;
     Board word = 0;
-    for (int i = 0; i < 64; ++i) word |= Board{dot[i] > 0.0f} << i;
+    runVectorised([&]<typename Vector>() CHIARO_INLINE {
+      const float *bx = x.data() + first, *by = y.data() + first, *bz = z.data() + first;
+      const glm::vec3 n = normal;
+      Board result = 0;
+      for (int i = 0; i < 64; i += kWidth<Vector>) {
+        const Vector dot = loadVector<Vector>(bx + i) * n.x + loadVector<Vector>(by + i) * n.y + loadVector<Vector>(bz + i) * n.z;
+        result |= Board{trueElements<Vector>(dot > Vector{})} << i;
+      }
+      word = result;
+    });
     bits[b] = word;
   }
 }

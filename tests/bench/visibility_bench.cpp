@@ -74,7 +74,7 @@ void adaptive(benchmark::State& state) {
   state.counters["ray_share"] = static_cast<double>(someRays) / static_cast<double>(allRays);
   state.counters["different"] = static_cast<double>(different) / (kVertices * static_cast<double>(sampling) * sampling);
 }
-BENCHMARK(adaptive)->Args({32, 64})->Args({32, 128})->Args({32, 256})->Args({64, 256})->Args({32, 512})->Unit(benchmark::kMillisecond);
+BENCHMARK(adaptive)->Args({32, 64})->Args({32, 128})->Args({32, 256})->Args({64, 256})->Args({128, 256})->Args({32, 512})->Unit(benchmark::kMillisecond);
 
 /// Sampling and storage at the first resolution; the clamp is the second, degrees.
 void transform(benchmark::State& state) {

@@ -13,6 +13,7 @@
 #include "assets/builtin/builtin_scene.h"
 #include "precompute/bake.h"
 #include "precompute/ssdf/ssdf.h"
+#include "precompute/transfer_rows.h"
 #include "tests/precompute/bake_scenes.h"
 
 namespace chiaro {
@@ -276,16 +277,20 @@ TEST(ConservativeTest, NoDiscFallsBetweenTexels) {
     EXPECT_GE(worst, 0.9 * radius) << resolution << ": no more than it must be";
   }
   for (const double angle : {0.3, 0.1, 0.05}) {
-    const int resolution = conservativeCoarse(angle);
-    EXPECT_LE(coveringRadius(resolution), 0.5 * angle);
-    EXPECT_GT(coveringRadius(resolution / 2), 0.5 * angle);
+    const AdaptiveSphere sphere(16, 128, angle);
+    EXPECT_LE(coveringRadius(sphere.levels[sphere.first].resolution), 0.5 * angle);
+    if (sphere.first > 0) {
+      EXPECT_GT(coveringRadius(sphere.levels[sphere.first - 1].resolution), 0.5 * angle);
+    }
   }
+  EXPECT_EQ(AdaptiveSphere(16, 128).first, 0u);
+  EXPECT_THROW(AdaptiveSphere(16, 128, 0.01), std::invalid_argument);
 }
 
 TEST(ConservativeTest, NoOccluderAsWideAsTheAngleIsMissed) {
   std::mt19937 random(7);
   const double angle = 0.09;
-  const AdaptiveSphere sphere(conservativeCoarse(angle), 4 * conservativeCoarse(angle));
+  const AdaptiveSphere sphere(16, 256, angle);
   for (int i = 0; i < 300; ++i) {
     auto axis = randomDirection(random);
     axis.y = std::abs(axis.y) + 0.06f;  // wholly above the horizon
@@ -296,6 +301,60 @@ TEST(ConservativeTest, NoOccluderAsWideAsTheAngleIsMissed) {
     adaptive({.normal = {0, 1, 0}, .front = {0, 1e-4f, 0}});
     ASSERT_NE(adaptive.visible(), adaptive.above()) << axis.x << " " << axis.y << " " << axis.z;
   }
+}
+
+/// A rectangle far above a floor, `width` radians wide or a little more from every vertex of the floor, and four times as long.
+Scene bladeAbove(glm::vec3 axis, float width, float turn) {
+  constexpr float kDistance = 40.0f;
+  const auto a = glm::normalize(axis), right = glm::normalize(glm::cross(a, glm::vec3(0.3f, 0.1f, 1.0f))), up = glm::cross(right, a);
+  const float w = 1.04f * kDistance * 2.0f * std::tan(0.5f * width), h = 4.0f * w;
+  const auto u = w * (std::cos(turn) * right + std::sin(turn) * up), v = h * (std::cos(turn) * up - std::sin(turn) * right);
+  Primitive blade;
+  addGrid(blade, kDistance * a - 0.5f * (u + v), u, v, 1);
+  return sceneWith({floorGrid(0.5f, 2), blade});
+}
+
+TEST(ConservativeTest, ABakeMissesNoBladeAsWideAsItsLeastOccluder) {
+  constexpr float kAngle = 0.04f;
+  constexpr std::size_t kFloor = 9;
+  std::mt19937 random(8);
+  std::uniform_real_distribution<float> turn(0.0f, std::numbers::pi_v<float>);
+  TransferRows::Layout usual{.resolution = 64, .samplingResolution = 256, .clamp = kMaxDistance, .leastOccluder = 0.0f, .levels = {},
+                             .directions = {}, .directionSharpness = 32.0f};
+  auto careful = usual, all = usual;
+  careful.leastOccluder = kAngle;
+  all.leastOccluder = static_cast<float>(2.0 * coveringRadius(256)) * 1.0001f;
+  std::size_t missed = 0, missedCarefully = 0;
+  for (int i = 0; i < 50; ++i) {
+    auto axis = randomDirection(random);
+    axis.y = std::abs(axis.y) + 0.3f;  // wholly above the horizon
+    const auto scene = bladeAbove(axis, kAngle, turn(random));
+    const RayScene rays(scene);
+    const auto viewpoints = viewpointsOf(scene, rays);
+    std::vector<std::uint32_t> floor;
+    for (std::uint32_t v = 0; v < kFloor; ++v) floor.push_back(v);
+    const auto traced = [&](const TransferRows::Layout& layout) {
+      const TransferRows rows(rays, viewpoints, layout);
+      std::vector<float> values(kFloor * rows.size());
+      rows(floor, values.data(), rows.size());
+      return values;
+    };
+    const auto some = traced(usual), most = traced(careful), every = traced(all);
+    const auto size = every.size() / kFloor;
+    for (std::size_t v = 0; v < kFloor; ++v) {
+      const auto open = [&](const std::vector<float>& rows) {
+        return std::all_of(rows.begin() + static_cast<std::ptrdiff_t>(v * size), rows.begin() + static_cast<std::ptrdiff_t>((v + 1) * size),
+                           [](float s) { return std::abs(s) >= kMaxDistance; });
+      };
+      ASSERT_FALSE(open(every));
+      missed += open(some);
+      missedCarefully += open(most);
+    }
+    // Nor is any part of it lost at 64 x 64, which is coarser than what is traced throughout.
+    EXPECT_EQ(most, every) << i;
+  }
+  EXPECT_EQ(missedCarefully, 0u);
+  EXPECT_GT(missed, 0u) << "else the test shows nothing";
 }
 
 }  // namespace

@@ -55,8 +55,8 @@ void expectEqualsBruteForce(const OctahedralGrid& grid, const Signal& signal) {
   boundaryPoints(grid, signal.above, signal.visible, signal.doubleSided, points);
   for (std::size_t t = 0; t < grid.texelCount; ++t) {
     const double expected = bruteForce(signal, points, grid.direction(t)) * (texelBit(signal.visible.data(), t) ? 1.0 : -1.0);
-    // Directions and points are floats (6e-8), and so is the chord between them.
-    ASSERT_LE(std::abs(static_cast<double>(signal.ssdf[grid.rowMajor[t]]) - expected), 5e-7) << "texel " << t << " of " << points.size() << " points";
+    // Directions and points are floats (6e-8), and a square of texels is one plane for each point: up to 2e-6 where these cancel.
+    ASSERT_LE(std::abs(static_cast<double>(signal.ssdf[grid.rowMajor[t]]) - expected), 3e-6) << "texel " << t << " of " << points.size() << " points";
   }
 }
 
@@ -112,7 +112,7 @@ TEST(Ssdf, AtAnyResolutionAndClamp) {
         for (std::size_t t = 0; t < storageGrid.texelCount; ++t) {
           const double distance = std::min(bruteForce(stored, points, storageGrid.direction(t)), static_cast<double>(clamp));
           const double expected = texelBit(stored.visible.data(), t) ? distance : -distance;
-          ASSERT_LE(std::abs(static_cast<double>(stored.ssdf[storageGrid.rowMajor[t]]) - expected), 1e-6)
+          ASSERT_LE(std::abs(static_cast<double>(stored.ssdf[storageGrid.rowMajor[t]]) - expected), 3e-6)
               << sampling << " to " << storage << " clamp " << clamp << " two sides " << doubleSided << " texel " << t;
         }
       }

@@ -77,7 +77,7 @@ TEST(Precompute, WrongUsageIsOneLineAndTwo) {
   expectOneLine(precompute({"builtin:sphere"}), ExitCode::usage, "--output");
   const std::vector<std::pair<std::vector<std::string>, std::string>> cases{
       {{"--resolution", "15"}, "--resolution"}, {{"--resolution", "512"}, "--resolution"}, {{"--resolution", "18"}, "multiple of 4"},
-      {{"--resolution", "many"}, "--resolution"}, {{"--terms", "-1"}, "--terms"}, {{"--clusters", "5000"}, "clusters"}, {{"--weight-bits", "9"}, "weight bits"}, {{"--function-bits", "3"}, "function bits"}, {{"--sample-resolution", "96"}, "sample resolution"}, {{"--compression", "zip"}, "--compression"},          {{"--terms", "257"}, "--terms"},
+      {{"--resolution", "many"}, "--resolution"}, {{"--terms", "-1"}, "--terms"}, {{"--clusters", "5000"}, "clusters"}, {{"--weight-bits", "9"}, "weight bits"}, {{"--function-bits", "3"}, "function bits"}, {{"--sample-resolution", "96"}, "sample resolution"}, {{"--least-occluder", "-1"}, "--least-occluder"}, {{"--least-occluder", "nan"}, "--least-occluder"}, {{"--least-occluder", "91"}, "--least-occluder"}, {{"--least-occluder", "1"}, "least occluder"}, {{"--compression", "zip"}, "--compression"},          {{"--terms", "257"}, "--terms"},
       {{"--directions", "9"}, "--directions"},  {{"--directions", "4"}, "--directions"},   {{"--crease-angle-deg", "nan"}, "--crease-angle-deg"},
       {{"--crease-angle-deg", "-1"}, "--crease-angle-deg"}, {{"--threads", "-2"}, "--threads"}, {{"--refine", "1.5"}, "--refine"},
       {{"--refine", "-0.1"}, "--refine"}, {{"--refine", "nan"}, "--refine"}, {{"--refine-vertices", "-1"}, "--refine-vertices"}, {{"--frobnicate"}, "--frobnicate"},
