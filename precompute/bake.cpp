@@ -36,7 +36,11 @@ void requireValid(const BakeSettings& settings) {
   if (settings.resolution % 4 != 0) throw usageError("resolution", "is not a multiple of 4", "use 32, 64, 128, ...");
   if (settings.directionCount % 4 != 0) throw usageError("directions", "is not a multiple of 4", "use 16, 32, 64, ...");
   if (!(settings.directionSharpness > 0.0f)) throw usageError("direction sharpness", "is not positive", "use 32");
-  if (settings.compression == Compression::pca) return;
+  if (settings.compression == Compression::pca) {
+    if (settings.targetError != 0.0 || settings.bytesPerVertex != 0.0)
+      throw usageError("compression", "pca goes by its terms, not by bytes or an error", "use clustered or joint, or give terms alone");
+    return;
+  }
   requireRange("clusters", settings.clusters, 0, 4096);
   requireRange("functions", settings.functions, 0, 1024);
   if (settings.resolution % 8 != 0) throw usageError("resolution", "is not a multiple of 8", "use 32, 64, 128, ...");
@@ -68,7 +72,7 @@ std::unique_ptr<Journal> openJournal(const Scene& scene, const BakeSettings& set
 void requireLeastOccluder(const BakeSettings& settings) {
   constexpr double kDegrees = 180.0 / std::numbers::pi;
   const double degrees = kDegrees * static_cast<double>(settings.leastOccluder);
-  if (!(degrees >= 0.0 && degrees <= 90.0)) throw usageError("least occluder", "is out of range", "give 0 (off) to 90 degrees");
+  if (!(degrees >= 0.0 && settings.leastOccluder <= std::numbers::pi_v<float> / 2.0f)) throw usageError("least occluder", "is out of range", "give 0 (off) to 90 degrees");
   if (degrees == 0.0) return;
   const double least = 2.0 * kDegrees * coveringRadius(settings.samplingResolution);
   if (degrees >= least) return;

@@ -71,9 +71,6 @@ struct BakeReport {
   int terms = 0;
   double bytesPerVertex = 0.0;
   bool missedTarget = false;  ///< even the most bytes leave a larger error than BakeSettings::targetError
-  /// clustered forms: as few bytes a vertex as keep the mean error of the visible fraction at or below this for lobes of every sharpness
-  /// measured (BakeReport::error); functions and clusters are chosen too. 0: off
-  double targetError = 0.0;
   struct { double visibility = 0, ssdf = 0, compression = 0, total = 0; } seconds;
   RepairReport repairs;
   RefineReport refinement;

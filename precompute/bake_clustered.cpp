@@ -34,7 +34,7 @@ double secondsSince(Clock::time_point start) { return std::chrono::duration<doub
 
 // Sharpness 3, 10.5, 36.75, 128.6, and maps whose texels are about as wide as half a lobe.
 const std::vector<VisibilityLevel> kLevels{{3.0f, 12}, {10.5f, 20}, {36.75f, 28}, {128.625f, 44}};
-/// With levels, only lobes sharper than the last one read the SSDF: three of their standard deviations.
+/// With levels, only lobes of half the last one's sharpness and more read the SSDF: two to three of their standard deviations.
 constexpr float kJointClamp = 0.265f;
 /// What the share of a lobe weighs in the joint error beside a radian of distance: the sharpest level holds the most detail and, unweighted,
 /// would be the worst kept.
@@ -110,7 +110,9 @@ double mostBytes(const BakeSettings& settings) {
 }
 
 ModelSize sizeOf(const BakeSettings& settings, double bytes, std::size_t vertices, std::size_t columns) {
-  auto automatic = modelSize(std::min(bytes, *std::rbegin(kByteRungs)), vertices, columns);
+  // Bytes that were asked for are kept where few vertices share the functions; without, a small scene is worth some.
+  const int least = settings.bytesPerVertex > 0.0 || settings.targetError > 0.0 ? 4 : 32;
+  auto automatic = modelSize(std::min(bytes, *std::rbegin(kByteRungs)), vertices, columns, least);
   if (std::isinf(bytes)) automatic.functions = std::max(automatic.functions, static_cast<int>(std::min<std::size_t>(vertices, kMostNeeded)));
   return {.functions = settings.functions > 0 ? settings.functions : automatic.functions,
           .clusters = settings.clusters > 0 ? settings.clusters : automatic.clusters};

@@ -58,7 +58,7 @@ bool unpackBlocks4(const std::uint8_t* bytes, std::size_t count, std::int8_t* va
     const auto n = std::min(kBlock, count - first);
     const int b = bytes[0];
     std::int16_t q[kBlock];
-    if (b > 127 || !unpackNibbles(bytes + 1, kBlock, q) || largest(q, n) != (b > 0 ? 7 : 0)) return false;
+    if (b > 127 || !unpackNibbles(bytes + 1, kBlock, q) || largest(q, n) != (b > 0 ? 7 : 0) || largest(q + n, kBlock - n) != 0) return false;
     for (std::size_t i = 0; i < n; ++i) values[first + i] = static_cast<std::int8_t>(scaled(b, q[i], 7));
   }
   return true;
@@ -83,7 +83,7 @@ bool unpackBlocks8(const std::uint8_t* bytes, std::size_t count, std::int16_t* v
     const int b = bytes[0] | bytes[1] << 8;
     std::int8_t q[kBlock];
     std::memcpy(q, bytes + 2, kBlock);
-    if (b > 32767 || largest(q, n) != (b > 0 ? 127 : 0)) return false;
+    if (b > 32767 || largest(q, n) != (b > 0 ? 127 : 0) || largest(q + n, kBlock - n) != 0) return false;
     for (std::size_t i = 0; i < n; ++i) values[first + i] = static_cast<std::int16_t>(scaled(b, q[i], 127));
   }
   return true;

@@ -1,4 +1,5 @@
 #include <Imath/half.h>
+#include <algorithm>
 
 #include <cmath>
 #include <cstring>
@@ -289,6 +290,7 @@ class BakedReader {
       all += k;
       componentBytes += storedComponentBytes(out, k);
     }
+    if (t.terms != *std::max_element(terms.begin(), terms.end())) fail("\"terms\" is not the largest number of a cluster's terms");
     std::vector<float> meanScales(count, 0.0f), weightScales;
     std::vector<std::uint8_t> means, components;
     if (functions > 0) {
@@ -353,6 +355,7 @@ class BakedReader {
       out.weights.resize(out.weights.size() + narrow);
       inRange = unpackNibbles(from, narrow, out.weights.data() + out.weights.size() - narrow) && inRange;
       from += (narrow + 1) / 2;
+      if (narrow % 2 != 0) inRange = inRange && from[-1] < 16;  // filled up with 0
     }
     if (!inRange) fail(label + " has a weight out of range");
     return out;

@@ -15,8 +15,8 @@ struct TermBytes {
   double vertices = 1.0;      ///< of the scene for each row of Cluster::rows
 };
 
-/// Drops components until the rest and the vertices' weights take at most `bytes`: each time the one whose energy per byte is least. A cluster
-/// keeps its strongest.
+/// Drops components until the rest and the vertices' weights take at most `bytes`: each time the one whose energy per byte is least. What
+/// a cluster keeps is its strongest.
 void dropWeakTerms(std::vector<Cluster>& clusters, const TermBytes& cost, double bytes);
 
 }  // namespace chiaro

@@ -16,10 +16,11 @@ struct ModelSize {
 
 /// A quarter for the functions, of 4 bits a value and `columns` values; a cluster for 80 vertices at kUsualBytes (measured on the built-in
 /// scene: from half to twice as many of either are within a twentieth of the best).
-inline ModelSize modelSize(double bytesPerVertex, std::size_t vertices, std::size_t columns) {
+/// leastFunctions: whatever the bytes.
+inline ModelSize modelSize(double bytesPerVertex, std::size_t vertices, std::size_t columns, int leastFunctions) {
   const double all = bytesPerVertex * static_cast<double>(vertices), usual = bytesPerVertex / kUsualBytes;
   const auto within = [](double value, double least, double most) { return static_cast<int>(std::clamp(value, least, std::max(least, most))); };
-  return {.functions = within(0.25 * all / (0.5625 * static_cast<double>(columns)), 32.0, std::min(320.0 * usual, 1024.0)),
+  return {.functions = within(0.25 * all / (0.5625 * static_cast<double>(columns)), leastFunctions, std::min(320.0 * usual, 1024.0)),
           .clusters = within(all / (80.0 * kUsualBytes), 1.0, std::min(1024.0 * usual, 4096.0))};
 }
 

@@ -1,5 +1,7 @@
 #include "precompute/compression/product.h"
 
+#include "precompute/compression/blas_name.h"
+
 #include <cblas.h>
 
 #include <Eigen/Cholesky>
@@ -9,6 +11,8 @@
 // Not in every version's header.
 extern "C" {
 void openblas_set_num_threads(int);
+char* openblas_get_config();
+char* openblas_get_corename();
 int openblas_get_parallel();  // 0: built for one thread, and then not safe to call from several
 }
 
@@ -66,6 +70,8 @@ RowMajor<double> orthonormalisedOnce(const RowMajor<double>& block) {
 }
 
 }  // namespace
+
+std::string blasName() { return std::string(openblas_get_config()) + ", " + openblas_get_corename(); }
 
 RowMajor<float> product(const RowMajorRef<float>& a, const RowMajorRef<float>& b) { return multiplied<float>(CblasNoTrans, CblasNoTrans, a, b); }
 RowMajor<double> product(const RowMajorRef<double>& a, const RowMajorRef<double>& b) { return multiplied<double>(CblasNoTrans, CblasNoTrans, a, b); }

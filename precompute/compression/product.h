@@ -1,6 +1,6 @@
 #pragma once
 /// Dense matrix products by the BLAS, which brings kernels for the processor it finds itself on; Eigen's own are compiled for the oldest one.
-/// One thread each (parallelBlocks spreads them), the same bits for the same shapes.
+/// One thread each (parallelBlocks spreads them), the same bits for the same shapes on the same kind of processor.
 
 #include <Eigen/Core>
 

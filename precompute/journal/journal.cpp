@@ -85,7 +85,11 @@ Journal::Journal(std::filesystem::path path, const Fingerprint& fingerprint, boo
   if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
     throw close("another bake is writing to it", "wait for that one, or choose another name for the output");
   std::array<char, 8> magic{};
-  if (status.st_size > 0 && (!readAt(descriptor_, 0, magic.data(), magic.size()) || !std::equal(magic.begin(), magic.end() - 1, kMagic.begin())))
+  const auto read = std::min<std::size_t>(static_cast<std::size_t>(status.st_size), magic.size());
+  // Zeros, or less than all of it: what a power cut may leave of one of ours.
+  const bool torn = readAt(descriptor_, 0, magic.data(), read) && (std::all_of(magic.begin(), magic.end(), [](char c) { return c == 0; }) ||
+                                                                   (read < magic.size() && std::equal(magic.begin(), magic.begin() + static_cast<std::ptrdiff_t>(read), kMagic.begin())));
+  if (status.st_size > 0 && !torn && (read < magic.size() || !std::equal(magic.begin(), magic.end() - 1, kMagic.begin())))
     throw close("is there already, and is not what a bake leaves to go on from", "move it away");
   if (status.st_size > 0 && !fresh) found_ = scan(fingerprint) ? Found::same : Found::other;
   if (found_ == Found::same) return;

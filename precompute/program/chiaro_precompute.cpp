@@ -17,6 +17,7 @@
 #include "assets/scene/load_scene.h"
 #include "assets/transfer/transfer.h"
 #include "assets/transfer/transfer_format.h"
+#include "precompute/compression/blas_name.h"
 #include "precompute/bake.h"
 #include "precompute/memory_budget.h"
 #include "precompute/program/bake_json.h"
@@ -200,7 +201,7 @@ void printSummary(const Options& options, const BakeRun& run, const BakeReport& 
 
 /// A bake that goes on must be the same program's: its version, and its very bytes where the system shows them.
 std::string identity() {
-  std::string text = "chiaro-precompute " CHIARO_VERSION;
+  std::string text = "chiaro-precompute " CHIARO_VERSION ", " + blasName();
   std::error_code error;
   if (std::filesystem::exists("/proc/self/exe", error)) text += " " + checksumOf(readFile("/proc/self/exe"));
   return text;
@@ -250,7 +251,7 @@ ExitCode precompute(int argc, char** argv) {
   const BakeStorage storage{.journal = partialOf(options.output),
                             .fresh = options.fresh,
                             .program = identity(),
-                            .memoryLimit = static_cast<std::size_t>(options.memoryLimitMib * 1048576.0),
+                            .memoryLimit = static_cast<std::size_t>(std::ceil(options.memoryLimitMib * 1048576.0)),
                             .notice = [&](const std::string& line) {
                               bar.clear();
                               if (!options.quiet) std::fprintf(stderr, "chiaro-precompute: %s\n", line.c_str());
@@ -270,6 +271,9 @@ ExitCode precompute(int argc, char** argv) {
     }
   });
   bar.clear();
+  if (const double wanted = run.settings.bytesPerVertex; wanted > 0.0 && report.bytesPerVertex > 1.02 * wanted)
+    run.warnings.push_back("--bytes " + std::to_string(std::lround(wanted)) + " cannot be kept: what all vertices share takes " +
+                           std::to_string(std::lround(report.bytesPerVertex)) + " of each: give fewer --functions and --clusters, or a lower --resolution");
   if (report.missedTarget)
     run.warnings.push_back("--target-error is not reached with " + std::to_string(std::lround(report.bytesPerVertex)) +
                            " bytes a vertex: give more --terms, --resolution or --sample-resolution, or --refine");

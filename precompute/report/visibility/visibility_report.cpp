@@ -60,24 +60,24 @@ void bakeInto(Input& input, const VisibilityOptions& options, ProgressBar& bar) 
   }
 }
 
-Input load(const std::string& name, bool ground) {
+Input load(const std::string& name, const VisibilityOptions& options) {
   if (isBaked(name)) {
-    if (ground) throw usageError("--ground", name + " is baked already", "give the scene that it was baked from");
+    if (options.ground) throw usageError("--ground", name + " is baked already", "give the scene that it was baked from");
+    if (!options.bake.empty()) throw usageError("--bake", name + " is baked already", "give the scene that it was baked from");
     auto baked = readBakedScene(name);
     Input input{.scene = std::move(baked.scene), .transfers = {}};
     input.transfers.push_back(std::move(baked.transfer));
     return input;
   }
   Scene scene = isBuiltinName(name) ? builtinScene(name) : loadScene(name);
-  if (ground) addGround(scene);
+  if (options.ground) addGround(scene);
   RepairReport repairs;
   return {.scene = prepareScene(std::move(scene), BakeSettings{}.creaseAngle, repairs), .transfers = {}};
 }
 
 SceneComparison compareScene(const std::string& name, const VisibilityOptions& options, ProgressBar& bar) {
   const auto start = std::chrono::steady_clock::now();
-  Input input = load(name, options.ground);
-  if (input.transfers.empty()) bakeInto(input, options, bar);
+  Input input = load(name, options);
   const MethodMaker methods = [&](const VisibilityInput& from) {
     auto all = baselineMethods(from);
     for (std::size_t i = 0; i < input.transfers.size(); ++i)
@@ -88,6 +88,7 @@ SceneComparison compareScene(const std::string& name, const VisibilityOptions& o
   result.scene = name;
   result.ground = options.ground;
   try {
+    if (input.transfers.empty()) bakeInto(input, options, bar);
     result.comparison = compareVisibility(input.scene, methods, options.settings, [&](const std::string& stage, double done) {
       throwIfInterrupted();
       bar.update(stage, done);
