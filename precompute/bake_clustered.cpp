@@ -102,6 +102,7 @@ CoordinateScale coordinateScales(const Pca& pca, std::size_t sampled) {
 }
 
 constexpr double kLeastTermBytes = 40.0;  // where few vertices share the functions
+constexpr double kAllTermBytes = 60.0;    // a vertex' share of everything else, with two dozen terms
 
 /// One model of a bake: infinite bytes keep all terms.
 double mostBytes(const BakeSettings& settings) {
@@ -110,9 +111,11 @@ double mostBytes(const BakeSettings& settings) {
 }
 
 ModelSize sizeOf(const BakeSettings& settings, double bytes, std::size_t vertices, std::size_t columns) {
-  // Bytes that were asked for are kept where few vertices share the functions; without, a small scene is worth some.
-  const int least = settings.bytesPerVertex > 0.0 || settings.targetError > 0.0 ? 4 : 32;
-  auto automatic = modelSize(std::min(bytes, *std::rbegin(kByteRungs)), vertices, columns, least);
+  const double most = std::min(bytes, *std::rbegin(kByteRungs));
+  // A small scene is worth 32 functions; where bytes were asked for, as many of these as leave room for terms.
+  const double room = ((most - kAllTermBytes) * static_cast<double>(vertices) - 4.0 * static_cast<double>(columns)) / (0.5625 * static_cast<double>(columns));
+  const bool limited = settings.bytesPerVertex > 0.0 || settings.targetError > 0.0;
+  auto automatic = modelSize(most, vertices, columns, limited ? static_cast<int>(std::clamp(room, 4.0, 32.0)) : 32);
   if (std::isinf(bytes)) automatic.functions = std::max(automatic.functions, static_cast<int>(std::min<std::size_t>(vertices, kMostNeeded)));
   return {.functions = settings.functions > 0 ? settings.functions : automatic.functions,
           .clusters = settings.clusters > 0 ? settings.clusters : automatic.clusters};
