@@ -1,6 +1,5 @@
 #include "precompute/bake.h"
 
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -12,16 +11,13 @@
 #include "precompute/bake_clustered.h"
 #include "precompute/bake_pca.h"
 #include "precompute/bake_task.h"
+#include "precompute/elapsed.h"
 #include "precompute/journal/fingerprint.h"
 #include "precompute/visibility/adaptive_visibility.h"
 #include "precompute/visibility/fractions.h"
 
 namespace chiaro {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double secondsSince(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 void requireRange(const std::string& name, double value, double least, double most) {
   if (value >= least && value <= most) return;

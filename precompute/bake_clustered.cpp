@@ -2,7 +2,6 @@
 
 #include <Eigen/Core>
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <iterator>
 #include <limits>
@@ -16,6 +15,7 @@
 #include "precompute/compression/encode_clusters.h"
 #include "precompute/compression/model_size.h"
 #include "precompute/compression/product.h"
+#include "precompute/elapsed.h"
 #include "precompute/fraction_bytes.h"
 #include "precompute/journal/pca_record.h"
 #include "precompute/journal/row_store.h"
@@ -27,10 +27,7 @@
 namespace chiaro {
 namespace {
 
-using Clock = std::chrono::steady_clock;
 using RowMatrix = RowMajor<float>;
-
-double secondsSince(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 // Sharpness 3, 10.5, 36.75, 128.6, and maps whose texels are about as wide as half a lobe.
 const std::vector<VisibilityLevel> kLevels{{3.0f, 12}, {10.5f, 20}, {36.75f, 28}, {128.625f, 44}};
@@ -57,10 +54,7 @@ std::vector<std::uint32_t> chosen(std::size_t count, std::size_t wanted, std::ui
 }
 
 std::vector<float> columnWeights(const TransferRows& rows, bool joint) {
-  std::vector<float> weight;
-  const auto& grid = rows.storedGrid();
-  weight.resize(grid.texelCount);
-  for (std::size_t t = 0; t < grid.texelCount; ++t) weight[grid.rowMajor[t]] = grid.solidAngle[t];
+  auto weight = rows.storedGrid().rowMajorSolidAngle();
   if (!joint) return weight;
   for (const auto& level : rows.layout().levels)
     for (int t = 0; t < level.resolution * level.resolution; ++t)
@@ -296,6 +290,7 @@ void bakeClustered(const BakeTask& task, BakedScene& baked, BakeReport& report) 
   for (const auto& p : baked.scene.primitives) primitiveVertices.push_back(p.positions.size());
   const auto training = chosen(count, kMostTraining, settings.seed + 1);
   const Transfer plain = transfer;
+  std::optional<ClusteredTruth> truth;  // not before it is needed: its rows take memory
   const auto compress = [&](double bytes) {
     const auto start = Clock::now();
     const auto size = sizeOf(settings, bytes, count, columns);
@@ -306,7 +301,8 @@ void bakeClustered(const BakeTask& task, BakedScene& baked, BakeReport& report) 
     transfer = plain;
     encodeClusters(leading, clusters, coordinates, primitiveVertices, encodingOf(settings, bytes), transfer);
     report.seconds.compression += secondsSince(start);
-    report.error = measureClusteredError(task.rays, viewpoints, rows, transfer, settings, task.stage("error"));
+    if (!truth) truth.emplace(task.rays, viewpoints, rows, settings, task.stage("error"));
+    report.error = truth->errorOf(transfer);
   };
   report.seconds.compression += secondsSince(compressionStart);
   if (settings.targetError > 0.0) {

@@ -1,13 +1,13 @@
 #include "precompute/bake_pca.h"
 
 #include <algorithm>
-#include <chrono>
 #include <mutex>
 #include <vector>
 
 #include "precompute/bake_error.h"
 #include "precompute/compression/encode.h"
 #include "precompute/compression/pca.h"
+#include "precompute/elapsed.h"
 #include "precompute/fraction_bytes.h"
 #include "precompute/journal/row_store.h"
 #include "precompute/parallel.h"
@@ -18,10 +18,6 @@
 
 namespace chiaro {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double secondsSince(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 /// A thread's working memory.
 struct Scratch {
@@ -109,9 +105,7 @@ void bakePca(const BakeTask& task, BakedScene& baked, BakeReport& report) {
   traceRows(task, grid, ssdf, baked, report);
 
   const auto compressionStart = Clock::now();
-  std::vector<float> columnWeight(grid.texelCount);
-  for (std::size_t t = 0; t < grid.texelCount; ++t) columnWeight[grid.rowMajor[t]] = grid.solidAngle[t];
-  const auto pca = computePca(ssdf, kMaxDistance, columnWeight, pcaSettings, task.stage("compression"));
+  const auto pca = computePca(ssdf, kMaxDistance, grid.rowMajorSolidAngle(), pcaSettings, task.stage("compression"));
   encodePca(pca, baked.scene, transfer);
   report.seconds.compression = secondsSince(compressionStart);
 

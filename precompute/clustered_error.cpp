@@ -2,44 +2,27 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <random>
 
 #include "assets/transfer/row_decoder.h"
 #include "precompute/lobe_samples.h"
 #include "precompute/parallel.h"
+#include "precompute/traced_share.h"
 #include "precompute/transfer_lookup.h"
 #include "shaders/cpp/lobe.h"
 
 namespace chiaro {
 namespace {
 
-constexpr std::array kSharpness{3, 10, 30, 100, 300, 1000, 3000};
 constexpr std::size_t kVertices = 256;
 constexpr std::size_t kAxes = 16;
 constexpr std::uint32_t kRays = 512;
+constexpr std::size_t kBlock = 16;
+constexpr auto& kSharpness = ClusteredTruth::kSharpness;
 
-/// Share of the lobe's rays that leave above the horizon and meet nothing.
-double tracedFraction(const RayScene& rays, glm::vec3 origin, glm::vec3 n, glm::dvec3 axis, double sharpness, double turn) {
-  static_assert(kRays % 16 == 0);
-  int seen = 0;
-  alignas(64) float x[16], y[16], z[16];
-  for (std::uint32_t first = 0; first < kRays; first += 16) {
-    unsigned asked = 0;
-    for (std::uint32_t i = 0; i < 16; ++i) {
-      const auto w = lobeDirection(axis, sharpness, first + i, kRays, turn);
-      x[i] = w.x, y[i] = w.y, z[i] = w.z;
-      if (glm::dot(w, n) > 0.0f) asked |= 1u << i;
-    }
-    if (asked == 0) continue;
-    const unsigned hidden = rays.occluded16(origin, x, y, z, static_cast<std::uint16_t>(asked), 0.0f, std::numeric_limits<float>::infinity());
-    seen += std::popcount(asked & ~hidden);
-  }
-  return static_cast<double>(seen) / kRays;
-}
+std::size_t blocks(std::size_t vertices) { return (vertices + kBlock - 1) / kBlock; }
 
 struct Sums {
   double squared = 0.0, wrongSign = 0.0, solidAngle = 0.0;
@@ -49,33 +32,59 @@ struct Sums {
 
 }  // namespace
 
-std::vector<std::pair<std::string, double>> measureClusteredError(const RayScene& rays, const std::vector<Viewpoint>& viewpoints,
-                                                                  const TransferRows& rows, const Transfer& transfer,
-                                                                  const BakeSettings& settings, const std::function<void(double)>& progress) {
+ClusteredTruth::ClusteredTruth(const RayScene& rays, const std::vector<Viewpoint>& viewpoints, const TransferRows& rows,
+                               const BakeSettings& settings, const std::function<void(double)>& progress)
+    : viewpoints_(viewpoints), rows_(rows), threads_(settings.threads) {
   std::mt19937 random(settings.seed + 1);
   const auto count = std::min(kVertices, viewpoints.size());
-  std::vector<std::uint32_t> vertices;
   for (std::size_t i = 0; i < count; ++i)
-    vertices.push_back(static_cast<std::uint32_t>(uniform(random) * static_cast<double>(viewpoints.size())));
-
-  const RowDecoder decoder(transfer);
-  const auto columns = transfer.columns();
-  std::vector<float> stored(count * columns, 0.0f);
-  std::vector<float> exact(count * rows.size());
-  constexpr std::size_t kBlock = 16;
-  const auto& levels = rows.layout().levels;
-  std::vector<Sums> parts(count);
+    vertices_.push_back(static_cast<std::uint32_t>(uniform(random) * static_cast<double>(viewpoints.size())));
+  exact_.resize(count * rows.size());
+  axes_.resize(count);
   StepCounter steps(count, progress);
-  parallelBlocks(settings.threads, (count + kBlock - 1) / kBlock, [&](std::size_t block) {
+  parallelBlocks(threads_, blocks(count), [&](std::size_t block) {
     const auto begin = block * kBlock, n = std::min(kBlock, count - begin);
-    rows(std::span<const std::uint32_t>(vertices).subspan(begin, n), exact.data() + begin * rows.size(), rows.size());
+    rows(std::span<const std::uint32_t>(vertices_).subspan(begin, n), exact_.data() + begin * rows.size(), rows.size());
+    std::vector<glm::vec3> directions(kRays);
     for (std::size_t i = begin; i < begin + n; ++i) {
-      decoder.add(vertices[i], 1.0f, stored.data() + i * columns);
+      const auto& viewpoint = viewpoints[vertices_[i]];
+      std::mt19937 own(settings.seed ^ vertices_[i]);
+      for (std::size_t a = 0; a < kAxes; ++a) {
+        auto axis = uniformDirection(own);
+        bool front = glm::dot(axis, glm::dvec3(viewpoint.normal)) >= 0.0;
+        if (!front && !viewpoint.doubleSided) {
+          axis = -axis;
+          front = true;
+        }
+        const double turn = 2.0 * std::numbers::pi * uniform(own);
+        const auto normal = front ? viewpoint.normal : -viewpoint.normal;
+        auto& lobes = axes_[i].emplace_back(Axis{.axis = axis, .aboveHorizon = {}, .visible = {}});
+        for (std::size_t s = 0; s < kSharpness.size(); ++s) {
+          for (std::uint32_t r = 0; r < kRays; ++r) directions[r] = lobeDirection(axis, kSharpness[s], r, kRays, turn);
+          lobes.visible[s] = tracedShare(rays, front ? viewpoint.front : viewpoint.back, normal, directions);
+          lobes.aboveHorizon[s] = lobe64::sgHalfSpaceFraction(glm::dot(axis, glm::dvec3(normal)), static_cast<double>(kSharpness[s]));
+        }
+      }
+      steps.add();
+    }
+  });
+}
+
+std::vector<std::pair<std::string, double>> ClusteredTruth::errorOf(const Transfer& transfer) const {
+  const RowDecoder decoder(transfer);
+  const auto count = vertices_.size();
+  const auto& levels = rows_.layout().levels;
+  const auto& grid = rows_.storedGrid();
+  std::vector<Sums> parts(count);
+  parallelBlocks(threads_, blocks(count), [&](std::size_t block) {
+    std::vector<float> stored(transfer.columns());
+    for (std::size_t i = block * kBlock; i < std::min(count, (block + 1) * kBlock); ++i) {
+      std::fill(stored.begin(), stored.end(), 0.0f);
+      decoder.add(vertices_[i], 1.0f, stored.data());
       auto& sum = parts[i];
-      const auto& viewpoint = viewpoints[vertices[i]];
-      const float *got = stored.data() + i * columns, *want = exact.data() + i * rows.size();
+      const auto& viewpoint = viewpoints_[vertices_[i]];
+      const float *got = stored.data(), *want = exact_.data() + i * rows_.size();
       const auto isAbove = [&](glm::vec3 w) { return viewpoint.doubleSided || glm::dot(w, viewpoint.normal) > 0.0f; };
-      const auto& grid = rows.storedGrid();
       for (std::size_t t = 0; t < grid.texelCount; ++t) {
         if (!isAbove(grid.direction(t))) continue;
         const double error = static_cast<double>(got[grid.rowMajor[t]] - want[grid.rowMajor[t]]), w = static_cast<double>(grid.solidAngle[t]);
@@ -95,27 +104,14 @@ std::vector<std::pair<std::string, double>> measureClusteredError(const RayScene
         sum.levelSquared.push_back(squared);
         sum.levelCount.push_back(all);
       }
-      std::mt19937 own(settings.seed ^ vertices[i]);
-      for (std::size_t a = 0; a < kAxes; ++a) {
-        auto axis = uniformDirection(own);
-        bool front = glm::dot(axis, glm::dvec3(viewpoint.normal)) >= 0.0;
-        if (!front && !viewpoint.doubleSided) {
-          axis = -axis;
-          front = true;
-        }
-        const double turn = 2.0 * std::numbers::pi * uniform(own);
-        const auto n3 = front ? viewpoint.normal : -viewpoint.normal;
+      for (const auto& lobes : axes_[i])
         for (std::size_t s = 0; s < kSharpness.size(); ++s) {
-          const double truth = tracedFraction(rays, front ? viewpoint.front : viewpoint.back, n3, axis, kSharpness[s], turn);
-          const double above = lobe64::sgHalfSpaceFraction(glm::dot(axis, glm::dvec3(n3)), static_cast<double>(kSharpness[s]));
           const auto error = [&](const float* row) {
-            return std::abs(above * visibleShare(row, grid.resolution, levels, glm::vec3(axis), kSharpness[s]) - truth);
+            return std::abs(lobes.aboveHorizon[s] * visibleShare(row, grid.resolution, levels, glm::vec3(lobes.axis), kSharpness[s]) - lobes.visible[s]);
           };
           sum.stored[s] += error(got);
           sum.uncompressed[s] += error(want);
         }
-      }
-      steps.add();
     }
   });
 

@@ -1,17 +1,15 @@
 #include "precompute/transfer_rows.h"
 
 #include <algorithm>
-#include <chrono>
 #include <utility>
 
+#include "precompute/elapsed.h"
 #include "precompute/ssdf/ssdf.h"
 #include "precompute/visibility/visibility.h"
 #include "shaders/cpp/lobe.h"
 
 namespace chiaro {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 /// Adds the time since `from` to `sum` and starts anew.
 void lap(Clock::time_point& from, double& sum) {

@@ -8,10 +8,7 @@
 namespace chiaro {
 
 void CoordinateScale::pack(const float* values, std::int16_t* out) const {
-  for (std::size_t d = 0; d < columns(); ++d) {
-    const float scaled = std::clamp(values[d] / most[d] * 32767.0f, -32767.0f, 32767.0f);
-    out[d] = static_cast<std::int16_t>(scaled + (scaled < 0.0f ? -0.5f : 0.5f));
-  }
+  for (std::size_t d = 0; d < columns(); ++d) out[d] = roundedToInt16(values[d] / most[d] * 32767.0f);
 }
 
 void CoordinateScale::unpack(const std::int16_t* packed, std::size_t count, float* values) const {

@@ -157,10 +157,7 @@ class MatrixBlocks : public RowBlocks {
 
 void toFixedPoint(const float* values, std::size_t count, float range, std::int16_t* out) {
   const float scale = 32767.0f / range;
-  for (std::size_t j = 0; j < count; ++j) {
-    const float scaled = std::clamp(values[j] * scale, -32767.0f, 32767.0f);
-    out[j] = static_cast<std::int16_t>(scaled + (scaled < 0.0f ? -0.5f : 0.5f));  // a form that compilers vectorise
-  }
+  for (std::size_t j = 0; j < count; ++j) out[j] = roundedToInt16(values[j] * scale);
 }
 
 void FixedPointMatrix::setRow(std::size_t i, const float* source) { toFixedPoint(source, columns, range, row(i)); }

@@ -1,11 +1,18 @@
 #pragma once
 /// Rows of 16-bit values that need not be in memory: they are asked for block by block.
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
 namespace chiaro {
+
+/// To the nearest, within +-32767; in a form that compilers vectorise.
+inline std::int16_t roundedToInt16(float value) {
+  const float within = std::clamp(value, -32767.0f, 32767.0f);
+  return static_cast<std::int16_t>(within + (within < 0.0f ? -0.5f : 0.5f));
+}
 
 class RowBlocks {
  public:

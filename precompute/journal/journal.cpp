@@ -42,11 +42,11 @@ std::uint64_t checksumOf(const Header& header, std::uint64_t place) {
 
 std::string reason() { return std::strerror(errno); }
 
-/// All of it, or false.
-bool readAt(int descriptor, std::uint64_t offset, void* to, std::size_t size) {
-  auto* bytes = static_cast<std::byte*>(to);
+/// All of it by pread or pwrite, or false.
+template <class Bytes, class Call>
+bool whole(Call call, int descriptor, std::uint64_t offset, Bytes* bytes, std::size_t size) {
   while (size > 0) {
-    const auto n = ::pread(descriptor, bytes, size, static_cast<off_t>(offset));
+    const auto n = call(descriptor, bytes, size, static_cast<off_t>(offset));
     if (n < 0 && errno == EINTR) continue;
     if (n <= 0) return false;
     bytes += n;
@@ -56,17 +56,20 @@ bool readAt(int descriptor, std::uint64_t offset, void* to, std::size_t size) {
   return true;
 }
 
+bool readAt(int descriptor, std::uint64_t offset, void* to, std::size_t size) {
+  return whole(::pread, descriptor, offset, static_cast<std::byte*>(to), size);
+}
+
 bool writeAt(int descriptor, std::uint64_t offset, const void* from, std::size_t size) {
-  const auto* bytes = static_cast<const std::byte*>(from);
-  while (size > 0) {
-    const auto n = ::pwrite(descriptor, bytes, size, static_cast<off_t>(offset));
-    if (n < 0 && errno == EINTR) continue;
-    if (n <= 0) return false;
-    bytes += n;
-    offset += static_cast<std::uint64_t>(n);
-    size -= static_cast<std::size_t>(n);
-  }
-  return true;
+  return whole(::pwrite, descriptor, offset, static_cast<const std::byte*>(from), size);
+}
+
+/// Whether a file of `size` bytes starts as a journal does. Zeros, or less than all of it, are what a power cut may leave of one.
+bool isOurs(int descriptor, std::size_t size) {
+  std::array<char, kMagic.size() - 1> start{};  // without the version
+  const auto count = static_cast<std::ptrdiff_t>(std::min(size, start.size()));
+  if (!readAt(descriptor, 0, start.data(), static_cast<std::size_t>(count))) return false;
+  return std::equal(start.begin(), start.begin() + count, kMagic.begin()) || std::all_of(start.begin(), start.end(), [](char c) { return c == 0; });
 }
 
 }  // namespace
@@ -84,12 +87,7 @@ Journal::Journal(std::filesystem::path path, const Fingerprint& fingerprint, boo
   if (::fstat(descriptor_, &status) != 0 || !S_ISREG(status.st_mode)) throw close("is not a regular file", "choose another name for the output");
   if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
     throw close("another bake is writing to it", "wait for that one, or choose another name for the output");
-  std::array<char, 8> magic{};
-  const auto read = std::min<std::size_t>(static_cast<std::size_t>(status.st_size), magic.size());
-  // Zeros, or less than all of it: what a power cut may leave of one of ours.
-  const bool torn = readAt(descriptor_, 0, magic.data(), read) && (std::all_of(magic.begin(), magic.end(), [](char c) { return c == 0; }) ||
-                                                                   (read < magic.size() && std::equal(magic.begin(), magic.begin() + static_cast<std::ptrdiff_t>(read), kMagic.begin())));
-  if (status.st_size > 0 && !torn && (read < magic.size() || !std::equal(magic.begin(), magic.end() - 1, kMagic.begin())))
+  if (!isOurs(descriptor_, static_cast<std::size_t>(status.st_size)))
     throw close("is there already, and is not what a bake leaves to go on from", "move it away");
   if (status.st_size > 0 && !fresh) found_ = scan(fingerprint) ? Found::same : Found::other;
   if (found_ == Found::same) return;

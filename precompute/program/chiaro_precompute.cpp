@@ -1,6 +1,5 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -18,6 +17,7 @@
 #include "assets/transfer/transfer.h"
 #include "assets/transfer/transfer_format.h"
 #include "precompute/compression/blas_name.h"
+#include "precompute/elapsed.h"
 #include "precompute/bake.h"
 #include "precompute/memory_budget.h"
 #include "precompute/program/bake_json.h"
@@ -150,10 +150,6 @@ void finish(Options& options) {
   if (!options.json.empty()) requireWritable(options.json);
 }
 
-double secondsSince(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
 void printRepairs(const RepairReport& repairs) {
   const std::pair<std::size_t, const char*> counts[] = {
       {repairs.weldedVertices, "equal vertices merged"},
@@ -237,7 +233,7 @@ ExitCode precompute(int argc, char** argv) {
 
   ProgressBar bar(progressStyle(options.quiet));
   BakeRun run{.input = options.scene, .output = options.output.string(), .version = CHIARO_VERSION, .settings = options.settings, .memoryLimitMib = options.memoryLimitMib};
-  const auto loadStart = std::chrono::steady_clock::now();
+  const auto loadStart = Clock::now();
   auto scene = isBuiltinName(options.scene) ? builtinScene(options.scene.substr(options.scene.find(':') + 1))
                                                   : loadScene(options.scene, [&](const std::string& warning) {
                                                       run.warnings.push_back(warning);
@@ -278,7 +274,7 @@ ExitCode precompute(int argc, char** argv) {
     run.warnings.push_back("--target-error is not reached with " + std::to_string(std::lround(report.bytesPerVertex)) +
                            " bytes a vertex: give more --terms, --resolution or --sample-resolution, or --refine");
 
-  const auto writeStart = std::chrono::steady_clock::now();
+  const auto writeStart = Clock::now();
   throwIfInterrupted();
   writeBakedScene(options.output, baked, "chiaro-precompute " CHIARO_VERSION);
   std::error_code ignored;

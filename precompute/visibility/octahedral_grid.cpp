@@ -45,6 +45,12 @@ OctahedralGrid::OctahedralGrid(int side)
   }
 }
 
+std::vector<float> OctahedralGrid::rowMajorSolidAngle() const {
+  std::vector<float> result(texelCount);
+  for (std::size_t t = 0; t < texelCount; ++t) result[rowMajor[t]] = solidAngle[t];
+  return result;
+}
+
 std::size_t OctahedralGrid::texelAt(glm::vec3 direction) const {
   const auto uv = lobe32::octahedralEncode(direction);
   const auto texel = [&](float u) { return std::clamp(static_cast<int>(u * static_cast<float>(resolution)), 0, resolution - 1); };

@@ -45,6 +45,8 @@ struct OctahedralGrid {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> seam;
 
   glm::vec3 direction(std::size_t texel) const { return {x[texel], y[texel], z[texel]}; }
+  /// `solidAngle` in the order of a stored map: what its columns weigh.
+  std::vector<float> rowMajorSolidAngle() const;
   /// The texel that holds `direction`.
   std::size_t texelAt(glm::vec3 direction) const;
   /// The texel `dx`, `dy` (-1, 0, 1) beside `texel`, across the border where need be.

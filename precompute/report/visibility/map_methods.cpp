@@ -52,8 +52,7 @@ class PcaMethod : public VisibilityMethod {
   PcaMethod(const VisibilityInput& input, const TracedVertices& traced, const MapKind& kind)
       : kind_(kind), encoded_(input.encoded), resolution_(traced.grid().resolution), texels_(traced.grid().texelCount) {
     const auto& grid = traced.grid();
-    std::vector<float> columnWeight(texels_);
-    for (std::size_t t = 0; t < texels_; ++t) columnWeight[grid.rowMajor[t]] = grid.solidAngle[t];
+    const auto columnWeight = grid.rowMajorSolidAngle();
     const PcaSettings settings{.terms = input.terms, .seed = input.seed, .threads = input.threads};
     auto pca = computePca(mapsOf(input, traced, kind, input.basis), columnWeight, settings);
     terms_ = static_cast<std::size_t>(pca.terms);

@@ -1,7 +1,6 @@
 #include "precompute/report/visibility/visibility_comparison.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -11,6 +10,7 @@
 #include "precompute/report/visibility/haar_method.h"
 #include "precompute/report/visibility/map_methods.h"
 #include "precompute/report/visibility/sh_method.h"
+#include "precompute/traced_share.h"
 #include "shaders/cpp/lobe.h"
 
 namespace chiaro {
@@ -32,35 +32,9 @@ struct PointSums {
 };
 
 glm::dvec3 directionAbove(glm::vec3 normal, std::mt19937& random) {
-  const double z = 2.0 * uniform(random) - 1.0, phi = 2.0 * std::numbers::pi * uniform(random), r = std::sqrt(1.0 - z * z);
-  const glm::dvec3 w(r * std::cos(phi), r * std::sin(phi), z);
+  const auto w = uniformDirection(random);
   return glm::dot(w, glm::dvec3(normal)) < 0.0 ? -w : w;
 }
-
-/// Packets of sixteen directions; the last is filled up with directions that are not asked for.
-class RayPackets {
- public:
-  double visibleShare(const RayScene& rays, const Viewpoint& view, const std::vector<glm::vec3>& directions) {
-    int seen = 0;
-    for (std::size_t first = 0; first < directions.size(); first += 16) {
-      std::uint32_t above = 0;
-      for (std::size_t i = 0; i < 16 && first + i < directions.size(); ++i) {
-        const auto w = directions[first + i];
-        x_[i] = w.x;
-        y_[i] = w.y;
-        z_[i] = w.z;
-        if (glm::dot(w, view.normal) > 0.0f) above |= 1u << i;
-      }
-      if (above == 0) continue;
-      const auto hidden = rays.occluded16(view.front, x_, y_, z_, above, 0.0f, std::numeric_limits<float>::infinity());
-      seen += std::popcount(above & ~hidden);
-    }
-    return static_cast<double>(seen) / static_cast<double>(directions.size());
-  }
-
- private:
-  alignas(64) float x_[16] = {}, y_[16] = {}, z_[16] = {};
-};
 
 PointSums measure(const RayScene& rays, const Methods& methods, const SurfacePoint& point, const std::vector<Patterns>& patterns,
                   std::mt19937 random) {
@@ -68,7 +42,6 @@ PointSums measure(const RayScene& rays, const Methods& methods, const SurfacePoi
   sums.error.resize(methods.size());
   std::vector<LobeFraction> fractions;
   for (const auto& method : methods) fractions.push_back(method->at(point));
-  RayPackets packets;
   std::vector<glm::vec3> directions;
   Lobe lobe;
   for (std::size_t a = 0; a < kAxes; ++a) {
@@ -78,7 +51,7 @@ PointSums measure(const RayScene& rays, const Methods& methods, const SurfacePoi
       double halves[2] = {};
       for (double& half : halves) {
         patterns[s].truth.directions(lobe.axis, turn(), directions);
-        half = packets.visibleShare(rays, point.view, directions);
+        half = tracedShare(rays, point.view.front, point.view.normal, directions);
       }
       const double truth = 0.5 * (halves[0] + halves[1]);
       sums.truth[s] += truth;
