@@ -2,9 +2,11 @@
 // CHIARO_BENCH_SCENE: a file or builtin:NAME, else builtin:ornament.
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
 #include <bit>
 #include <cstdlib>
 #include <string>
+#include <vector>
 
 #include "assets/builtin/builtin_scene.h"
 #include "assets/scene/load_scene.h"
@@ -75,6 +77,74 @@ void adaptive(benchmark::State& state) {
   state.counters["different"] = static_cast<double>(different) / (kVertices * static_cast<double>(sampling) * sampling);
 }
 BENCHMARK(adaptive)->Args({32, 64})->Args({32, 128})->Args({32, 256})->Args({64, 256})->Args({128, 256})->Args({32, 512})->Unit(benchmark::kMillisecond);
+
+/// Rays from one origin, 16 a packet but for the last; padded.
+struct Packets {
+  glm::vec3 origin;
+  AlignedFloats x, y, z;
+  std::size_t rays;
+};
+
+/// The texels beside a pair that differs, of one side of the horizon of a map: board by board, which is the order of adaptive tracing too.
+Packets edgesOf(const SphereBoards& boards, const std::vector<Board>& side, const std::vector<Board>& visible, glm::vec3 origin,
+                Board which) {
+  std::vector<Board> seen(boards.boardCount), hidden(boards.boardCount);
+  for (std::size_t b = 0; b < boards.boardCount; ++b) {
+    seen[b] = visible[b] & side[b];
+    hidden[b] = ~visible[b] & side[b];
+  }
+  std::vector<std::size_t> texels;
+  for (std::size_t b = 0; b < boards.boardCount; ++b) {
+    const auto edge = (seen[b] & boards.around4(hidden.data(), b)) | (hidden[b] & boards.around4(seen.data(), b));
+    for (auto left = edge & which; left != 0; left &= left - 1)
+      texels.push_back(64 * b + static_cast<std::size_t>(std::countr_zero(left)));
+  }
+  const auto size = (texels.size() + 15) / 16 * 16;
+  Packets result{origin, AlignedFloats(size), AlignedFloats(size), AlignedFloats(size), texels.size()};
+  for (std::size_t i = 0; i < texels.size(); ++i) {
+    result.x[i] = boards.x[texels[i]];
+    result.y[i] = boards.y[texels[i]];
+    result.z[i] = boards.z[texels[i]];
+  }
+  return result;
+}
+
+/// What no method that traces both texels of every pair that differs can beat: those of the fully traced map are known beforehand, and
+/// nothing but their rays is timed. Second argument 2: every other one of them, as on a chessboard.
+void edges(benchmark::State& state) {
+  auto& b = bench();
+  const auto resolution = static_cast<int>(state.range(0));
+  const Board which = state.range(1) == 2 ? 0xa5a5a5a5a5a5a5a5u : ~Board{0};
+  const AdaptiveSphere sphere(resolution, resolution);
+  const auto& boards = sphere.levels.back();
+  AdaptiveVisibility visibility(b.rays, sphere);
+  std::vector<Packets> all;
+  std::vector<Board> side, visible;
+  std::size_t rays = 0;
+  for (const auto& viewpoint : b.viewpoints) {
+    visibility(viewpoint);
+    boards.fromTexels(visibility.above(), side);
+    boards.fromTexels(visibility.visible(), visible);
+    all.push_back(edgesOf(boards, side, visible, viewpoint.front, which));
+    rays += all.back().rays;
+    if (!viewpoint.doubleSided) continue;
+    for (auto& bits : side) bits = ~bits;
+    all.push_back(edgesOf(boards, side, visible, viewpoint.back, which));
+    rays += all.back().rays;
+  }
+  OcclusionPacket packet(b.rays);
+  for (auto _ : state)
+    for (const auto& packets : all) {
+      packet.setOrigin(packets.origin);
+      for (std::size_t i = 0; i < packets.rays; i += 16) {
+        const auto count = std::min<std::size_t>(packets.rays - i, 16);
+        benchmark::DoNotOptimize(packet(packets.x.data() + i, packets.y.data() + i, packets.z.data() + i, (1u << count) - 1u));
+      }
+    }
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(kVertices));
+  state.counters["rays"] = static_cast<double>(rays) / kVertices;
+}
+BENCHMARK(edges)->Args({256, 1})->Args({256, 2})->Unit(benchmark::kMillisecond);
 
 /// Sampling and storage at the first resolution; the clamp is the second, degrees.
 void transform(benchmark::State& state) {
