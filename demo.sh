@@ -23,7 +23,7 @@ out=build/demo
 mkdir -p "$out"
 
 say "baking the built-in scene"
-"$bin/chiaro-precompute" builtin:ornament --clusters 1024 --functions 512 --wide-terms 4 --bytes -1 -o "$out/ornament.glb" --json "$out/bake.json"
+"$bin/chiaro-precompute" builtin:ornament --clusters 1024 --functions 512 --bytes 200 -o "$out/ornament.glb" --json "$out/bake.json"
 
 say "relighting it"
 picture() {

@@ -21,6 +21,7 @@ set(finders
   "^BLAS::" "set(BLA_VENDOR OpenBLAS)\nfind_dependency(BLAS)"
   "^OpenMesh(Core|Tools)$" "find_dependency(OpenMesh)"
   "^(OpenEXR|Imath)::" "find_dependency(OpenEXR CONFIG)"
+  "^LibLZMA::" "find_dependency(LibLZMA)"
   "^nlohmann_json::" "find_dependency(nlohmann_json)"
   "^TinyGLTF::" "find_dependency(TinyGLTF)"
   "^CLI11::" "find_dependency(CLI11)"

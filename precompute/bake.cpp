@@ -44,7 +44,6 @@ void requireValid(const BakeSettings& settings) {
   if (settings.samplingResolution > 1024 || times < 1 || (times & (times - 1)) != 0 || times * settings.resolution != settings.samplingResolution)
     throw usageError("sample resolution", "is not the resolution times a power of two, 1024 at most", "use 64, 128 or 256 with 64");
   if (settings.weightBits != 8 && settings.weightBits != 16) throw usageError("weight bits", "are neither 8 nor 16", "use 8");
-  if (settings.wideTerms < 0 || settings.wideTerms > 256) throw usageError("wide terms", "must lie between 0 and 256", "use 1");
   if (!std::isfinite(settings.bytesPerVertex)) throw usageError("bytes a vertex", "are not a number", "use 104");
   if (!(settings.targetError >= 0.0 && settings.targetError < 1.0)) throw usageError("target error", "must lie between 0 and 1", "use 0.02");
   if (settings.targetError > 0.0 && (settings.bytesPerVertex != 0.0 || settings.functions != 0 || settings.clusters != 0))
@@ -96,7 +95,6 @@ TransferFacts factsOf(const BakeSettings& settings, const BakeReport& report) {
     facts["settings.functions"] = settings.functions;
     facts["settings.weight_bits"] = settings.weightBits;
     facts["settings.function_bits"] = settings.functionBits;
-    facts["settings.wide_terms"] = settings.wideTerms;
     facts["settings.bytes_per_vertex"] = settings.bytesPerVertex;
     facts["settings.target_error"] = settings.targetError;
   }

@@ -33,10 +33,9 @@ struct BakeSettings {
   int clusters = 0;                 ///< clustered forms: 1..4096; 0: by the number of vertices
   int functions = 0;                ///< clustered forms: that all clusters share, 1..1024; 0: by the number of vertices
   int weightBits = 8;               ///< clustered forms: 8 or 16
-  int functionBits = 0;             ///< clustered forms: 16, 8, 4; 0: 8 or 4 by what each is worth
-  int wideTerms = 1;                ///< clustered forms: a cluster's terms with weightBits and 8-bit components; 4 bits each behind them
-  /// clustered forms: bytes a vertex, all counted, that terms are dropped to fit, within a hundredth; 0: 104, yet never less than 40 for the terms;
-  /// negative: no limit
+  int functionBits = 0;             ///< clustered forms: 16, 8, 4; 0: steps that follow from the bytes
+  /// clustered forms: bytes a vertex, all counted, that the steps of rounding are chosen to fit, within a hundredth; 0: 104, yet never so coarsely that it
+  /// shows in small scenes; negative: no limit
   double bytesPerVertex = 0.0;
   /// clustered forms: as few bytes a vertex as keep the mean error of the visible fraction at or below this for lobes of every sharpness
   /// measured (BakeReport::error); functions and clusters are chosen too. 0: off

@@ -13,9 +13,13 @@
 
 #include "precompute/clustered_error.h"
 #include "precompute/compression/encode_clusters.h"
+#include "precompute/compression/masked_pca.h"
+#include "precompute/compression/masked_projection.h"
 #include "precompute/compression/model_size.h"
 #include "precompute/compression/product.h"
+#include "precompute/compression/rate_control.h"
 #include "precompute/elapsed.h"
+#include "precompute/horizon_masks.h"
 #include "precompute/fraction_bytes.h"
 #include "precompute/journal/pca_record.h"
 #include "precompute/journal/row_store.h"
@@ -38,7 +42,11 @@ constexpr float kJointClamp = 0.265f;
 float levelWeight(const VisibilityLevel& level) { return level == kLevels.back() ? 0.25f : 0.15f; }
 constexpr float kFractionWeight = 0.3f;
 
-constexpr std::size_t kMostSampled = 8192;     // rows the shared functions are made from
+constexpr std::size_t kMostSampled = 8192;     // rows the shared functions are made from,
+constexpr std::size_t kLeastSampled = 2048;
+constexpr std::size_t kSampledOfFunction = 16; // so many for each of them: with a twentieth of the error of all rows
+constexpr int kMaskSide = 8;
+constexpr std::size_t kMostMasks = kMaskSide * kMaskSide + 1;
 constexpr std::size_t kMostTraining = 65536;   // rows the clusters are made from
 
 /// `wanted` of `count` in rising order, or all.
@@ -53,6 +61,12 @@ std::vector<std::uint32_t> chosen(std::size_t count, std::size_t wanted, std::ui
   return all;
 }
 
+std::vector<std::uint16_t> masksOf(const ColumnMasks& masks, std::span<const std::uint32_t> vertices) {
+  std::vector<std::uint16_t> result;
+  for (const auto v : vertices) result.push_back(masks.ofRow[v]);
+  return result;
+}
+
 std::vector<float> columnWeights(const TransferRows& rows, bool joint) {
   auto weight = rows.storedGrid().rowMajorSolidAngle();
   if (!joint) return weight;
@@ -65,27 +79,21 @@ std::vector<float> columnWeights(const TransferRows& rows, bool joint) {
   return weight;
 }
 
-/// Coordinates of rows in pca's functions.
-class Projection {
- public:
-  Projection(const Pca& pca, const std::vector<float>& weight)
-      : mean_(Eigen::Map<const Eigen::RowVectorXf>(pca.mean.data(), static_cast<Eigen::Index>(pca.mean.size()))),
-        matrix_(static_cast<Eigen::Index>(pca.mean.size()), pca.terms) {
-    for (Eigen::Index k = 0; k < matrix_.cols(); ++k)
-      for (Eigen::Index j = 0; j < matrix_.rows(); ++j)
-        matrix_(j, k) = pca.functions[static_cast<std::size_t>(k * matrix_.rows() + j)] * weight[static_cast<std::size_t>(j)];
-  }
-  /// rows: count by stride, of which the first columns matter.
-  RowMatrix operator()(const float* rows, std::size_t count, std::size_t stride) const {
-    const Eigen::Map<const RowMatrix, 0, Eigen::OuterStride<>> from(rows, static_cast<Eigen::Index>(count), matrix_.rows(),
-                                                                    Eigen::OuterStride<>(static_cast<Eigen::Index>(stride)));
-    return product(from.rowwise() - mean_, matrix_);
-  }
-
- private:
-  Eigen::RowVectorXf mean_;
-  RowMatrix matrix_;
-};
+/// Weights of sampled rows.
+void projectSample(const RowBlocks& sampled, const std::vector<std::uint32_t>& sample, const ColumnMasks& masks, const MaskedProjection& projection, int threads,
+                   Pca& pca) {
+  pca.weights.resize(sampled.rows() * static_cast<std::size_t>(pca.terms));
+  parallelBlocks(threads, sampled.blocks(), [&](std::size_t block) {
+    const auto first = block * RowBlocks::kRows, n = sampled.rowsOf(block), columns = sampled.columns();
+    std::vector<std::byte> room;
+    const auto* packed = sampled.block(block, room);
+    std::vector<float> rows(n * columns);
+    for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = static_cast<float>(packed[i]) * (kMaxDistance / 32767.0f);
+    const auto own = masksOf(masks, std::span(sample).subspan(first, n));
+    const RowMatrix projected = projection(rows.data(), columns, own);
+    std::copy_n(projected.data(), projected.size(), pca.weights.begin() + static_cast<std::ptrdiff_t>(first * static_cast<std::size_t>(pca.terms)));
+  });
+}
 
 CoordinateScale coordinateScales(const Pca& pca, std::size_t sampled) {
   std::vector<float> scale(static_cast<std::size_t>(pca.terms), 1e-6f);
@@ -95,33 +103,23 @@ CoordinateScale coordinateScales(const Pca& pca, std::size_t sampled) {
   return {scale};
 }
 
-constexpr double kLeastTermBytes = 40.0;  // where few vertices share the functions
-constexpr double kAllTermBytes = 60.0;    // a vertex' share of everything else, with two dozen terms
-
 /// One model of a bake: infinite bytes keep all terms.
 double mostBytes(const BakeSettings& settings) {
   if (settings.targetError > 0.0) return std::numeric_limits<double>::infinity();
   return settings.bytesPerVertex > 0.0 ? settings.bytesPerVertex : kUsualBytes;
 }
 
-ModelSize sizeOf(const BakeSettings& settings, double bytes, std::size_t vertices, std::size_t columns) {
-  const double most = std::min(bytes, *std::rbegin(kByteRungs));
-  // A small scene is worth 32 functions; where bytes were asked for, as many of these as leave room for terms.
-  const double room = ((most - kAllTermBytes) * static_cast<double>(vertices) - 4.0 * static_cast<double>(columns)) / (0.5625 * static_cast<double>(columns));
-  const bool limited = settings.bytesPerVertex > 0.0 || settings.targetError > 0.0;
-  auto automatic = modelSize(most, vertices, columns, limited ? static_cast<int>(std::clamp(room, 4.0, 32.0)) : 32);
-  if (std::isinf(bytes)) automatic.functions = std::max(automatic.functions, static_cast<int>(std::min<std::size_t>(vertices, kMostNeeded)));
+ModelSize sizeOf(const BakeSettings& settings, double bytes, std::size_t vertices) {
+  auto automatic = modelSize(std::min(bytes, *std::rbegin(kByteRungs)), vertices, settings.samplingResolution / settings.resolution);
+  if (std::isinf(bytes)) automatic.functions = std::max(automatic.functions, kMostNeeded);
   return {.functions = settings.functions > 0 ? settings.functions : automatic.functions,
           .clusters = settings.clusters > 0 ? settings.clusters : automatic.clusters};
 }
 
-ClusterEncoding encodingOf(const BakeSettings& settings, double bytes) {
-  return {.weightBits = settings.weightBits,
-          .functionBits = settings.functionBits,
-          .wideTerms = settings.wideTerms,
-          .bytesPerVertex = settings.bytesPerVertex < 0.0 || std::isinf(bytes) ? 0.0 : bytes,
-          .leastTermBytes = settings.bytesPerVertex == 0.0 && settings.targetError == 0.0 ? kLeastTermBytes : 0.0,
-          .threads = settings.threads};
+RateTarget rateOf(const BakeSettings& settings, double bytes) {
+  // Where nothing was asked for, no byte goes into what drowns in other errors, and small scenes, in which few vertices share much, take more of them.
+  if (settings.bytesPerVertex == 0.0 && settings.targetError == 0.0) return {.bytesPerVertex = bytes, .finest = 0.004, .mostRounding = 1e-3};
+  return {.bytesPerVertex = settings.bytesPerVertex < 0.0 ? std::numeric_limits<double>::infinity() : bytes};
 }
 
 double worstFraction(const std::vector<std::pair<std::string, double>>& error) {
@@ -146,16 +144,23 @@ struct Needs {
     const auto texels = static_cast<std::size_t>(samplingResolution) * static_cast<std::size_t>(samplingResolution);
     // A block as floats, as 16 bits and as a record; boards, distances and sums of the maps that are traced.
     const auto tracing = static_cast<std::size_t>(threadCount(threads)) * (8 * RowBlocks::kRows * rowColumns + 96 * texels);
-    const auto always = vertices * (4 + fractionBytes) + (fractionBytes > 0 ? 8 * vertices : 0);
+    const auto always = vertices * (6 + fractionBytes) + (fractionBytes > 0 ? 8 * vertices : 0) + 4 * kMostMasks * columns;
     const auto basis = 4 * functions * columns;
     const auto model = 4 * clusters * (terms + 1) * functions;
     const auto training = std::min(vertices, kMostTraining) * functions * 4;
     const auto measured = 2 * 256 * rowColumns * 4;
-    return always + std::max({sample + std::max(tracing, pcaMemory(sampled, columns, pca)),
-                              coordinates + 2 * basis + tracing,
+    const auto projection = MaskedProjection::memory(functions, columns, kMostMasks);
+    const auto threadsAsked = static_cast<std::size_t>(threadCount(threads));
+    const auto normalEquations = threadsAsked * (basis + 16 * functions * functions);
+    // Lists as they are, as they are packed, coded twice; and what xz works in.
+    const auto lists = 2 * functions * columns + clusters * (terms + 2) * functions + vertices * (terms + 2);
+    const auto coding = 3 * lists + threadsAsked * 12 * std::min<std::size_t>(lists, std::size_t{8} << 20);
+    return always + std::max({sample + std::max(tracing, pcaMemory(sampled, columns, pca) + 5 * basis),
+                              sample + basis + projection + normalEquations,
+                              coordinates + basis + projection + tracing,
                               coordinates + basis + 2 * training + model,
-                              coordinates + basis + 2 * model + 9 * vertices * terms,
-                              2 * basis + model + 3 * vertices * terms + 8 * vertices + measured + tracing});
+                              coordinates + basis + 3 * model + 9 * vertices * terms + coding,
+                              2 * basis + model + 3 * vertices * terms + 8 * vertices + measured + tracing + lists});
   }
 };
 
@@ -179,13 +184,14 @@ void bakeClustered(const BakeTask& task, BakedScene& baked, BakeReport& report) 
   const auto columns = joint ? rows.size() : rows.texels();
   // With levels the fractions are part of a row, else bytes beside it.
   const auto directions = layout.directions.size(), sideBytes = joint ? 0 : directions;
-  const auto mostSize = sizeOf(settings, mostBytes(settings), count, columns);
+  const auto mostSize = sizeOf(settings, mostBytes(settings), count);
   const PcaSettings pcaSettings{.terms = mostSize.functions, .iterations = 2, .seed = settings.seed, .threads = settings.threads};
+  const auto sampleSize = std::min(count, std::clamp(kSampledOfFunction * static_cast<std::size_t>(mostSize.functions), kLeastSampled, kMostSampled));
   const Needs needs{.vertices = count,
                     .rowColumns = rows.size(),
                     .columns = columns,
                     .functions = static_cast<std::size_t>(pcaSettings.terms),
-                    .sampled = std::min(count, kMostSampled),
+                    .sampled = sampleSize,
                     .clusters = static_cast<std::size_t>(mostSize.clusters),
                     .terms = static_cast<std::size_t>(settings.terms),
                     .fractionBytes = directions,
@@ -209,7 +215,7 @@ void bakeClustered(const BakeTask& task, BakedScene& baked, BakeReport& report) 
   StepCounter steps(count, progress);
   /// Traces those blocks of `vertices` that an earlier bake has not left in the journal. pack: one row into the store's numbers, a block at a time.
   const auto trace = [&](const std::vector<std::uint32_t>& vertices, RowStore& store,
-                         const std::function<void(const float*, std::size_t, std::int16_t*)>& pack) {
+                         const std::function<void(const float*, std::span<const std::uint32_t>, std::int16_t*)>& pack) {
     const auto start = Clock::now();
     const auto keepFractions = [&](std::size_t first, std::size_t n, const std::uint8_t* side) {
       if (!fractionBytes) return;
@@ -232,7 +238,7 @@ void bakeClustered(const BakeTask& task, BakedScene& baked, BakeReport& report) 
       if (!joint)
         for (std::size_t v = 0; v < n; ++v) toFractionBytes(buffer.data() + v * rows.size() + columns, directions, side.data() + v * sideBytes);
       keepFractions(first, n, side.data());
-      pack(buffer.data(), n, packed.data());
+      pack(buffer.data(), std::span(vertices).subspan(first, n), packed.data());
       store.put(block, part.rays, packed.data(), side.data());
       const std::lock_guard lock(mutex);
       tally += part;
@@ -241,20 +247,24 @@ void bakeClustered(const BakeTask& task, BakedScene& baked, BakeReport& report) 
     traceWall += secondsSince(start);
   };
 
-  const auto sample = chosen(count, kMostSampled, settings.seed);
+  const auto masks = horizonMasks(viewpoints, layout, columns, kMaskSide);
+  const auto sample = chosen(count, sampleSize, settings.seed);
   std::optional<RowStore> sampled(std::in_place, sample.size(), columns, sideBytes, place(BakeRecord::sampledRows, sampleInMemory));
-  trace(sample, *sampled, [&](const float* buffer, std::size_t n, std::int16_t* packed) {
-    for (std::size_t i = 0; i < n; ++i) toFixedPoint(buffer + i * rows.size(), columns, kMaxDistance, packed + i * columns);
+  trace(sample, *sampled, [&](const float* buffer, std::span<const std::uint32_t> own, std::int16_t* packed) {
+    for (std::size_t i = 0; i < own.size(); ++i) toFixedPoint(buffer + i * rows.size(), columns, kMaxDistance, packed + i * columns);
   });
 
   auto compressionStart = Clock::now();
   const auto weight = columnWeights(rows, joint);
   Pca pca;
+  std::optional<MaskedProjection> projection;
   {
     constexpr auto kKind = static_cast<std::uint32_t>(BakeRecord::sharedFunctions);
     std::vector<std::byte> record;
     if (task.journal == nullptr || !task.journal->read(kKind, 0, record) || !unpackPca(record, sample.size(), columns, pca)) {
-      pca = computePca(*sampled, kMaxDistance, weight, pcaSettings, task.stage("shared functions"));
+      pca = computeMaskedPca(*sampled, kMaxDistance, weight, {.masks = masks.masks, .ofRow = masksOf(masks, sample)}, pcaSettings, task.stage("shared functions"));
+      projection.emplace(pca, weight, masks, settings.threads);
+      projectSample(*sampled, sample, masks, *projection, settings.threads, pca);
       if (task.journal != nullptr) task.journal->append(kKind, 0, packPca(pca));
     }
   }
@@ -274,10 +284,10 @@ void bakeClustered(const BakeTask& task, BakedScene& baked, BakeReport& report) 
   for (std::size_t i = 0; i < sample.size(); ++i) coordinates.set(sample[i], pca.weights.data() + i * terms);
   pca.weights = {};
   {
-    const Projection projection(pca, weight);
-    trace(rest, *restCoordinates, [&](const float* buffer, std::size_t n, std::int16_t* packed) {
-      const RowMatrix projected = projection(buffer, n, rows.size());
-      for (std::size_t i = 0; i < n; ++i) scale.pack(projected.row(static_cast<Eigen::Index>(i)).data(), packed + i * terms);
+    if (!projection) projection.emplace(pca, weight, masks, settings.threads);
+    trace(rest, *restCoordinates, [&](const float* buffer, std::span<const std::uint32_t> own, std::int16_t* packed) {
+      const RowMatrix projected = (*projection)(buffer, rows.size(), masksOf(masks, own));
+      for (std::size_t i = 0; i < own.size(); ++i) scale.pack(projected.row(static_cast<Eigen::Index>(i)).data(), packed + i * terms);
     });
   }
   report.raysTraced = tally.rays;
@@ -293,13 +303,15 @@ void bakeClustered(const BakeTask& task, BakedScene& baked, BakeReport& report) 
   std::optional<ClusteredTruth> truth;  // not before it is needed: its rows take memory
   const auto compress = [&](double bytes) {
     const auto start = Clock::now();
-    const auto size = sizeOf(settings, bytes, count, columns);
+    const auto size = sizeOf(settings, bytes, count);
     const Pca leading = leadingTerms(pca, size.functions);
     coordinates.useColumns(static_cast<std::size_t>(leading.terms));
     const auto clusters = clusterRows(coordinates.read(training),
-                                      {.clusters = size.clusters, .terms = settings.terms, .seed = settings.seed, .threads = settings.threads}, task.stage("clusters"));
+                                      {.clusters = size.clusters, .terms = settings.terms, .iterations = 2, .seed = settings.seed, .threads = settings.threads}, task.stage("clusters"));
     transfer = plain;
-    encodeClusters(leading, clusters, coordinates, primitiveVertices, encodingOf(settings, bytes), transfer);
+    const ClusterEncoder encoder(leading, clusters, coordinates, primitiveVertices, weight,
+                                 {.weightBits = settings.weightBits, .functionBits = settings.functionBits, .functionRows = sample.size(), .ssdfTexels = rows.texels(), .threads = settings.threads});
+    baked.coded = encodeWithin(encoder, rateOf(settings, bytes), count, settings.threads, transfer);
     report.seconds.compression += secondsSince(start);
     if (!truth) truth.emplace(task.rays, viewpoints, rows, settings, task.stage("error"));
     report.error = truth->errorOf(transfer);
@@ -326,7 +338,7 @@ void bakeClustered(const BakeTask& task, BakedScene& baked, BakeReport& report) 
   if (joint) decodeFractions(transfer);
 
   report.terms = transfer.terms;
-  report.bytesPerVertex = transfer.bytesPerVertex(count);
+  report.bytesPerVertex = transfer.bytesPerVertex(count, &*baked.coded);
 }
 
 }  // namespace chiaro

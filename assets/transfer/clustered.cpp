@@ -6,12 +6,11 @@
 #include <cmath>
 #include <cstring>
 
-#include "assets/transfer/block_codec.h"
-
 namespace chiaro {
 namespace {
 
 constexpr std::size_t kBlock = 16;
+constexpr float kSmallestScale = 1e-30f;
 
 float largest(const float* values, std::size_t count) {
   float most = 0.0f;
@@ -22,6 +21,11 @@ float largest(const float* values, std::size_t count) {
 std::size_t blocks(std::size_t columns) { return (columns + kBlock - 1) / kBlock; }
 
 int nibble(int bits) { return bits >= 8 ? bits - 16 : bits; }
+
+double columnScaleOf(const std::vector<float>& scales, std::size_t column) { return scales.empty() ? 1.0 : static_cast<double>(scales[column]); }
+
+/// Of kind 12.
+int stepsOf(const std::uint8_t* low, std::size_t columns) { return static_cast<std::int8_t>(low[0]) + 256 * static_cast<std::int8_t>(low[columns]); }
 
 }  // namespace
 
@@ -34,11 +38,17 @@ bool isGeometric(const std::vector<VisibilityLevel>& levels) {
 }
 
 std::size_t PackedFunctions::bytesOf(int bits, std::size_t columns) {
-  if (bits == 16) return 2 * columns;
+  if (bits == 16 || bits == 12) return 2 * columns;
   return bits == 8 ? columns : blocks(columns) * (1 + kBlock / 2);
 }
 
 void PackedFunctions::append(const float* values, std::size_t columns, int bitsPerValue) {
+  if (bitsPerValue == 12) {
+    double most = static_cast<double>(kSmallestScale);
+    for (std::size_t i = 0; i < columns; ++i) most = std::max(most, std::abs(static_cast<double>(values[i])) / columnScaleOf(columnScale, i));
+    appendSteps(values, columns, static_cast<float>(most));
+    return;
+  }
   bits.push_back(static_cast<std::uint8_t>(bitsPerValue));
   const auto first = data.size();
   data.resize(first + bytesOf(bitsPerValue, columns));
@@ -51,7 +61,7 @@ void PackedFunctions::append(const float* values, std::size_t columns, int bitsP
     }
     return;
   }
-  const float most = std::max(largest(values, columns), 1e-30f);
+  const float most = std::max(largest(values, columns), kSmallestScale);
   scale.push_back(most);
   if (bitsPerValue == 8) {
     for (std::size_t i = 0; i < columns; ++i) to[i] = static_cast<std::uint8_t>(static_cast<std::int8_t>(std::lrint(values[i] / most * 127.0f)));
@@ -70,6 +80,37 @@ void PackedFunctions::append(const float* values, std::size_t columns, int bitsP
   }
 }
 
+void PackedFunctions::appendSteps(const float* values, std::size_t columns, float ofFunction) {
+  bits.push_back(12);
+  scale.push_back(ofFunction);
+  const auto first = data.size();
+  data.resize(first + bytesOf(12, columns));
+  auto *low = data.data() + first, *high = low + columns;
+  for (std::size_t i = 0; i < columns; ++i) {
+    const double steps = static_cast<double>(values[i]) / (static_cast<double>(ofFunction) * columnScaleOf(columnScale, i)) * kMostSteps;
+    const auto q = static_cast<int>(std::nearbyint(std::clamp<double>(steps, -kMostSteps, kMostSteps)));
+    low[i] = static_cast<std::uint8_t>(q & 255);
+    high[i] = static_cast<std::uint8_t>((q + 128) >> 8 & 255);
+  }
+}
+
+bool PackedFunctions::inRange(std::size_t columns) const {
+  const auto* from = data.data();
+  bool ok = true;
+  for (const int kind : bits) {
+    if (kind == 12)
+      for (std::size_t i = 0; i < columns; ++i) ok = ok && std::abs(stepsOf(from + i, columns)) <= kMostSteps;
+    if (kind == 8) ok = ok && std::find(from, from + columns, 128) == from + columns;
+    if (kind == 4)
+      for (std::size_t i = 0; i < columns; ++i) {
+        const auto byte = from[i / kBlock * (1 + kBlock / 2) + 1 + i % kBlock / 2];
+        ok = ok && nibble(byte >> (i % 2 == 0 ? 0 : 4) & 15) >= -7;
+      }
+    from += bytesOf(kind, columns);
+  }
+  return ok;
+}
+
 std::vector<float> PackedFunctions::unpack(std::size_t columns) const {
   std::vector<float> values(count() * columns);
   const auto* from = data.data();
@@ -83,6 +124,9 @@ std::vector<float> PackedFunctions::unpack(std::size_t columns) const {
         half.setBits(raw);
         to[i] = half;
       }
+    } else if (bits[f] == 12) {
+      for (std::size_t i = 0; i < columns; ++i)
+        to[i] = scale[f] * (columnScale.empty() ? 1.0f : columnScale[i]) * static_cast<float>(stepsOf(from + i, columns)) / static_cast<float>(kMostSteps);
     } else if (bits[f] == 8) {
       for (std::size_t i = 0; i < columns; ++i) to[i] = scale[f] * static_cast<float>(static_cast<std::int8_t>(from[i])) / 127.0f;
     } else {
@@ -102,16 +146,6 @@ std::vector<std::size_t> ClusteredVertices::firstWeights(const std::vector<Trans
   std::vector<std::size_t> first(cluster.size() + 1, 0);
   for (std::size_t i = 0; i < cluster.size(); ++i) first[i + 1] = first[i] + static_cast<std::size_t>(clusters[cluster[i]].terms);
   return first;
-}
-
-std::size_t storedComponentBytes(const ClusteredTransfer& clustered, int terms) {
-  const auto wide = static_cast<std::size_t>(std::min(terms, clustered.wideTerms)), functions = clustered.functions.count();
-  return wide * functions + (static_cast<std::size_t>(terms) - wide) * blockBytes4(functions);
-}
-
-std::size_t storedWeightBytes(const ClusteredTransfer& clustered, int terms) {
-  const auto wide = static_cast<std::size_t>(std::min(terms, clustered.wideTerms));
-  return wide * static_cast<std::size_t>(clustered.weightBits / 8) + (static_cast<std::size_t>(terms) - wide + 1) / 2;
 }
 
 std::vector<float> clusterMaps(const std::vector<TransferCluster>& clusters, const std::vector<float>& functions, const std::vector<float>& mean,

@@ -1,6 +1,6 @@
 #include <Imath/half.h>
-#include <algorithm>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -12,7 +12,7 @@
 #include "assets/file.h"
 #include "assets/scene/glb.h"
 #include "assets/scene/gltf_scene.h"
-#include "assets/transfer/block_codec.h"
+#include "assets/transfer/coded_lists.h"
 #include "assets/transfer/transfer.h"
 #include "assets/transfer/transfer_format.h"
 
@@ -171,6 +171,15 @@ class BakedReader {
     return values;
   }
 
+  /// The `size` bytes that a whole buffer view holds as an .xz stream, of which `stream` is a copy.
+  std::vector<std::uint8_t> unpacked(std::int64_t view, std::size_t size, const std::string& what, std::vector<std::uint8_t>& stream) const {
+    const auto& own = views_[static_cast<std::size_t>(view)];
+    auto bytes = unpackXz(own, size);
+    if (!bytes) fail(what + " does not unpack to " + std::to_string(size) + " bytes");
+    stream.assign(own.begin(), own.end());
+    return std::move(*bytes);
+  }
+
   std::int64_t viewIndex(const json& object, const char* name, const std::string& owner) const {
     return integer(object, name, 0, static_cast<std::int64_t>(views_.size()) - 1, owner);
   }
@@ -240,6 +249,7 @@ class BakedReader {
     Transfer& t = baked_.transfer;
     auto& out = t.clustered;
     const std::string owner = "\"clustered\"";
+    baked_.coded.emplace();
     if (t.resolution < 1) fail("\"resolution\" of clustered transfer is not positive");
     const json& levels = listOf(c, "levels", owner);
     if (levels.size() > kMostTransferLevels) fail("has more than " + std::to_string(kMostTransferLevels) + " levels");
@@ -253,9 +263,23 @@ class BakedReader {
     const auto columns = t.columns();
     t.mean = elements<float>(viewIndex(*extension_, "mean", kTransferExtension), columns, "the mean");
     requireFinite(t.mean, "the mean");
+    readMapScales(c, owner);
     readFunctions(c, columns, owner);
     readClusters(c, owner);
     listOf(c, "primitives", owner);
+  }
+
+  void readMapScales(const json& c, const std::string& owner) {
+    auto& out = baked_.transfer.clustered;
+    if (!c.contains("mapScales")) return;
+    const json& scales = listOf(c, "mapScales", owner);
+    if (scales.size() != mapsOf(out))
+      fail("has " + std::to_string(scales.size()) + " map scales for " + std::to_string(mapsOf(out)) + " maps");
+    for (const json& scale : scales) {
+      out.mapScales.push_back(scale.is_number() ? scale.get<float>() : 0.0f);
+      if (!(out.mapScales.back() > 0.0f) || !std::isfinite(out.mapScales.back())) fail("a map scale is not positive and finite");
+    }
+    out.functions.columnScale = columnScales(baked_.transfer);
   }
 
   void readFunctions(const json& c, std::size_t columns, const std::string& owner) {
@@ -267,11 +291,12 @@ class BakedReader {
     requireFinite(f.scale, "the list of function scales");
     std::size_t bytes = 0;
     for (std::size_t i = 0; i < count; ++i) {
-      if (f.bits[i] != 16 && f.bits[i] != 8 && f.bits[i] != 4) fail("a function has " + std::to_string(f.bits[i]) + " bits a value");
+      if (!isFunctionKind(f.bits[i])) fail("a function has " + std::to_string(f.bits[i]) + " bits a value");
       if (!(f.scale[i] > 0.0f)) fail("a function scale is not positive");
       bytes += PackedFunctions::bytesOf(f.bits[i], columns);
     }
-    f.data = elements<std::uint8_t>(viewIndex(c, "functions", owner), bytes, "the list of functions");
+    f.data = unpacked(viewIndex(c, "functions", owner), bytes, "the list of functions", baked_.coded->functions);
+    if (!f.inRange(columns)) fail("a function has a value out of range");
     requireFinite(f.unpack(columns), "the list of functions");
   }
 
@@ -282,82 +307,67 @@ class BakedReader {
     const auto functions = out.functions.count();
     out.weightBits = static_cast<int>(integer(c, "weightBits", 8, 16, owner));
     if (out.weightBits != 8 && out.weightBits != 16) fail("\"weightBits\" is neither 8 nor 16");
-    out.wideTerms = static_cast<int>(integer(c, "wideTerms", 0, kMostTransferTerms, owner));
     const auto terms = elements<std::uint16_t>(viewIndex(c, "clusterTerms", owner), count, "the list of cluster terms");
-    std::size_t all = 0, componentBytes = 0;
+    std::size_t all = 0;
     for (const auto k : terms) {
       if (k > t.terms) fail("a cluster has more terms than \"terms\"");
       all += k;
-      componentBytes += storedComponentBytes(out, k);
     }
     if (t.terms != *std::max_element(terms.begin(), terms.end())) fail("\"terms\" is not the largest number of a cluster's terms");
     std::vector<float> meanScales(count, 0.0f), weightScales;
-    std::vector<std::uint8_t> means, components;
+    std::vector<std::int16_t> means;
+    std::vector<std::uint8_t> components;
     if (functions > 0) {
       meanScales = elements<float>(viewIndex(c, "clusterMeanScales", owner), count, "the list of mean scales");
       requireFinite(meanScales, "the list of mean scales");
-      means = elements<std::uint8_t>(viewIndex(c, "clusterMeans", owner), count * blockBytes8(functions), "the list of cluster means");
+      means = valuesOfPlanes(unpacked(viewIndex(c, "clusterMeans", owner), 2 * count * functions, "the list of cluster means", baked_.coded->means), 2);
     } else if (all > 0) {
       fail("has cluster terms without functions");
     }
     if (all > 0) {
       weightScales = elements<float>(viewIndex(c, "weightScales", owner), all, "the list of weight scales");
       requireFinite(weightScales, "the list of weight scales");
-      components = elements<std::uint8_t>(viewIndex(c, "components", owner), componentBytes, "the list of components");
+      components = unpacked(viewIndex(c, "components", owner), all * functions, "the list of components", baked_.coded->components);
     }
     for (const float s : meanScales)
       if (!(s >= 0.0f)) fail("a mean scale is negative");
     for (const float s : weightScales)
       if (!(s > 0.0f)) fail("a weight scale is not positive");
+    for (const auto q : means)
+      if (q < -32767) fail("a cluster's mean is out of range");
+    for (const auto q : components)
+      if (q == 128) fail("a component is out of range");  // -128
+    const std::int16_t* mean = means.data();
     const std::uint8_t* component = components.data();
     const float* scale = weightScales.data();
-    for (std::size_t i = 0; i < count; ++i, scale += terms[i - 1]) {
-      TransferCluster cluster{.terms = terms[i], .meanScale = meanScales[i], .mean = std::vector<std::int16_t>(functions), .components = {},
-                              .weightScale = {scale, scale + terms[i]}};
-      if (!unpackBlocks8(means.data() + i * blockBytes8(functions), functions, cluster.mean.data())) fail("a cluster's mean is out of range");
-      cluster.components.resize(terms[i] * functions);
-      for (int k = 0; k < cluster.terms; ++k) {
-        std::int8_t* to = cluster.components.data() + static_cast<std::size_t>(k) * functions;
-        if (k < out.wideTerms) std::memcpy(to, component, functions);
-        else if (!unpackBlocks4(component, functions, to)) fail("a component is out of range");
-        component += k < out.wideTerms ? functions : blockBytes4(functions);
-      }
-      out.clusters.push_back(std::move(cluster));
+    for (std::size_t i = 0; i < count; ++i) {
+      out.clusters.push_back({.terms = terms[i], .meanScale = meanScales[i], .mean = {mean, mean + functions},
+                              .components = {component, component + terms[i] * functions}, .weightScale = {scale, scale + terms[i]}});
+      mean += functions;
+      component += terms[i] * functions;
+      scale += terms[i];
     }
   }
 
-  ClusteredVertices readClusteredVertices(std::size_t primitive, std::size_t count, const std::string& label) const {
+  ClusteredVertices readClusteredVertices(std::size_t primitive, std::size_t count, const std::string& label) {
     const auto& c = baked_.transfer.clustered;
     const json& list = (*extension_)["clustered"]["primitives"];
     if (list.size() != baked_.scene.primitives.size()) fail("\"clustered\" has other primitives than the scene");
     const json& entry = list[primitive];
     ClusteredVertices out;
-    out.cluster = elements<std::uint16_t>(viewIndex(entry, "clusters", label), count, "the list of clusters of " + label);
+    baked_.coded->weights.emplace_back();
+    const auto clusters = unpacked(viewIndex(entry, "clusters", label), 2 * count, "the list of clusters of " + label, baked_.coded->clusters.emplace_back());
+    for (std::size_t v = 0; v < count; ++v) out.cluster.push_back(static_cast<std::uint16_t>(clusters[v] | clusters[count + v] << 8));
     for (const auto cluster : out.cluster)
       if (cluster >= c.clusters.size()) fail(label + " names cluster " + std::to_string(cluster) + " of " + std::to_string(c.clusters.size()));
-    std::size_t weights = 0, size = 0;
-    for (const auto cluster : out.cluster) {
-      weights += static_cast<std::size_t>(c.clusters[cluster].terms);
-      size += storedWeightBytes(c, c.clusters[cluster].terms);
-    }
+    const std::size_t weights = out.firstWeights(c.clusters).back();
     if (weights == 0) return out;
-    const auto bytes = elements<std::uint8_t>(viewIndex(entry, "weights", label), size, "the list of weights of " + label);
-    const std::uint8_t* from = bytes.data();
-    out.weights.reserve(weights);
-    bool inRange = true;
-    for (const auto cluster : out.cluster) {
-      const int terms = c.clusters[cluster].terms, wide = std::min(terms, c.wideTerms);
-      for (int k = 0; k < wide; ++k, from += c.weightBits / 8) {
-        out.weights.push_back(c.weightBits == 8 ? static_cast<std::int8_t>(from[0]) : static_cast<std::int16_t>(from[0] | from[1] << 8));
-        inRange = inRange && out.weights.back() >= (c.weightBits == 8 ? -127 : -32767);
-      }
-      const auto narrow = static_cast<std::size_t>(terms - wide);
-      out.weights.resize(out.weights.size() + narrow);
-      inRange = unpackNibbles(from, narrow, out.weights.data() + out.weights.size() - narrow) && inRange;
-      from += (narrow + 1) / 2;
-      if (narrow % 2 != 0) inRange = inRange && from[-1] < 16;  // filled up with 0
-    }
-    if (!inRange) fail(label + " has a weight out of range");
+    const int width = c.weightBits / 8;
+    const auto byTerm =
+        valuesOfPlanes(unpacked(viewIndex(entry, "weights", label), weights * static_cast<std::size_t>(width), "the list of weights of " + label, baked_.coded->weights.back()), width);
+    for (const auto q : byTerm)
+      if (q < (c.weightBits == 8 ? -127 : -32767)) fail(label + " has a weight out of range");
+    out.weights = weightsByVertex(out, c.clusters, byTerm);
     return out;
   }
 
@@ -393,7 +403,7 @@ class BakedReader {
     decodeFractions(baked_.transfer);
   }
 
-  PrimitiveTransfer readPrimitive(const json& attributes, std::size_t index, std::size_t count, const std::string& label) const {
+  PrimitiveTransfer readPrimitive(const json& attributes, std::size_t index, std::size_t count, const std::string& label) {
     const Transfer& t = baked_.transfer;
     PrimitiveTransfer out;
     if (!t.clustered.empty()) out.clustered = readClusteredVertices(index, count, label);

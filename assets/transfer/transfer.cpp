@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "assets/transfer/block_codec.h"
-
 namespace chiaro {
 
 std::size_t Transfer::levelTexels() const {
@@ -17,21 +15,30 @@ std::size_t Transfer::columns() const {
   return texels() + levelTexels() + (fractionsInRow() ? static_cast<std::size_t>(directionCount) : 0);
 }
 
-double Transfer::bytesPerVertex(std::size_t vertexCount) const {
+double Transfer::bytesPerVertex(std::size_t vertexCount, const CodedLists* coded) const {
   if (vertexCount == 0) return 0.0;
   const auto size = [](const auto& values) { return static_cast<double>(values.size() * sizeof(values[0])); };
   double bytes = size(mean) + 2.0 * static_cast<double>(eigenfunctions.size()) + size(weightScale) + size(directions);
   if (!fractionsInRow()) bytes += static_cast<double>(directionCount) * static_cast<double>(vertexCount);
-  bytes += size(clustered.functions.bits) + size(clustered.functions.scale) + size(clustered.functions.data);
-  for (const auto& c : clustered.clusters)
-    bytes += 2.0 + 4.0 + static_cast<double>(blockBytes8(c.mean.size()) + storedComponentBytes(clustered, c.terms)) + size(c.weightScale);
   bytes += 2.0 * paddedTerms() * static_cast<double>(vertexCount);
-  std::vector<std::size_t> members(clustered.clusters.size(), 0);
-  for (const auto& p : primitives)
-    for (const auto c : p.clustered.cluster) ++members[c];
-  for (std::size_t c = 0; c < members.size(); ++c)
-    bytes += static_cast<double>(members[c]) * (2.0 + static_cast<double>(storedWeightBytes(clustered, clustered.clusters[c].terms)));
+  bytes += size(clustered.functions.bits) + size(clustered.functions.scale) + size(clustered.mapScales);
+  for (const auto& c : clustered.clusters) bytes += 2.0 + 4.0 + size(c.weightScale);  // terms, mean scale
+  if (!clustered.empty()) bytes += static_cast<double>(coded != nullptr ? coded->bytes() : codedLists(*this).bytes());
   return bytes / static_cast<double>(vertexCount);
+}
+
+std::vector<float> columnScales(const Transfer& transfer) {
+  std::vector<float> scales;
+  const auto& c = transfer.clustered;
+  if (c.mapScales.empty()) return scales;
+  scales.reserve(transfer.columns());
+  scales.insert(scales.end(), transfer.texels(), c.mapScales[0]);
+  for (std::size_t l = 0; l < c.levels.size(); ++l) {
+    const auto side = static_cast<std::size_t>(c.levels[l].resolution);
+    scales.insert(scales.end(), side * side, c.mapScales[1 + l]);
+  }
+  if (transfer.fractionsInRow()) scales.insert(scales.end(), static_cast<std::size_t>(transfer.directionCount), c.mapScales.back());
+  return scales;
 }
 
 void decodeFractions(Transfer& transfer) {

@@ -5,9 +5,9 @@
 /// What is stored for a vertex with unit normal n (Wang et al. 2009, section 4, with the horizon left out):
 ///  * its SSDF as PCA weights. The SSDF S(w) is the signed angle (radians) from direction w to the nearest edge of what
 ///    *other* surfaces hide: positive where w is free, negative where it is hidden, clamped to [-pi/2, pi/2]. The vertex's own
-///    horizon is not in it: below the horizon S mirrors the directions above (of a one-sided surface) or holds what the back
-///    sees (of a double-sided one), and the runtime clips by the normal it shades with. So an unoccluded vertex has S = pi/2
-///    everywhere and costs no error.
+///    horizon is not in it: below the horizon S mirrors the directions above (of a one-sided surface; clustered: only as far down
+///    as a lobe from above reads) or holds what the back sees (of a double-sided one), and the runtime clips by the normal it
+///    shades with. So an unoccluded vertex has S = pi/2 everywhere and costs no error.
 ///  * its visible fractions: for each of `directionCount` fixed lobes of sharpness `directionSharpness`, the share of the
 ///    lobe's cosine-weighted light that arrives. Broad lobes and diffuse light read these, sharp lobes the SSDF.
 
@@ -15,11 +15,13 @@
 #include <filesystem>
 #include <glm/glm.hpp>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "assets/scene/scene.h"
 #include "assets/transfer/clustered.h"
+#include "assets/transfer/coded_lists.h"
 
 namespace chiaro {
 
@@ -55,9 +57,13 @@ struct Transfer {
   bool fractionsInRow() const { return !clustered.levels.empty(); }
   /// Values of a row: the SSDF, the levels, and, with levels, the visible fractions.
   std::size_t columns() const;
-  /// Weights, visibility, and the shared mean, eigenfunctions and scales as stored, over all vertices.
-  double bytesPerVertex(std::size_t vertexCount) const;
+  /// Weights, visibility, and what all vertices share as stored, over all vertices. coded: of this transfer; without, a clustered one is coded for it,
+  /// which takes seconds a million vertices.
+  double bytesPerVertex(std::size_t vertexCount, const CodedLists* coded = nullptr) const;
 };
+
+/// PackedFunctions::columnScale, from the clustered form's mapScales: columns(), or empty.
+std::vector<float> columnScales(const Transfer& transfer);
 
 /// With fractionsInRow(): fills every primitive's visible fractions from its row.
 void decodeFractions(Transfer& transfer);
@@ -69,6 +75,9 @@ using TransferFacts = std::map<std::string, double>;
 struct BakedScene {
   Scene scene;  ///< every primitive has normals; tangents where a material needs them
   Transfer transfer;
+  /// Of `transfer`, where they are there already (a bake makes them to know its size, a file has them): the writer uses them. Whoever changes the transfer must
+  /// reset it.
+  std::optional<CodedLists> coded;
   TransferFacts facts;
 };
 

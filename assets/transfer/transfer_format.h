@@ -7,6 +7,8 @@
 #include <string>
 #include <string_view>
 
+#include "assets/transfer/clustered.h"
+
 namespace chiaro {
 
 inline constexpr const char* kTransferExtension = "CHIARO_radiance_transfer";
@@ -17,6 +19,11 @@ inline constexpr int kMostTransferDirections = 4096;
 inline constexpr std::size_t kMostTransferClusters = 65535;
 inline constexpr std::size_t kMostTransferFunctions = 4096;
 inline constexpr std::size_t kMostTransferLevels = 16;
+
+/// Bits a value of PackedFunctions.
+inline constexpr bool isFunctionKind(int bits) { return bits == 16 || bits == 12 || bits == 8 || bits == 4; }
+/// The maps of a row: SSDF, levels, then with levels the visible fractions.
+inline std::size_t mapsOf(const ClusteredTransfer& c) { return 1 + c.levels.size() + (c.levels.empty() ? 0 : 1); }
 
 /// XXH64 with seed 0, as 16 lower-case hexadecimal digits.
 std::string checksumOf(std::span<const std::uint8_t> bytes);

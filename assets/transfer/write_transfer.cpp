@@ -6,7 +6,7 @@
 
 #include "assets/error.h"
 #include "assets/file.h"
-#include "assets/transfer/block_codec.h"
+#include "assets/transfer/coded_lists.h"
 #include "assets/transfer/gltf_writer.h"
 #include "assets/transfer/transfer.h"
 #include "assets/transfer/transfer_format.h"
@@ -21,13 +21,14 @@ constexpr std::uint64_t kLargestGlb = 0xFFFFFFFFu;
 class FitCheck {
  public:
   FitCheck(const BakedScene& baked, std::string where)
-      : scene_(baked.scene), transfer_(baked.transfer), where_(std::move(where)) {}
+      : scene_(baked.scene), transfer_(baked.transfer), coded_(baked.coded), where_(std::move(where)) {}
 
   void run() const {
     require(scene_.primitives.size() == transfer_.primitives.size(), "the transfer has other primitives than the scene");
     require(!scene_.primitives.empty(), "the scene is empty");
     checkShared();
     for (std::size_t i = 0; i < scene_.primitives.size(); ++i) checkPrimitive(i);
+    require(!coded_ || holds(*coded_, transfer_), "its coded lists are not those of its transfer");
     const auto inRange = [](int index, std::size_t count) {
       return index == kNone || (index >= 0 && static_cast<std::size_t>(index) < count);
     };
@@ -83,16 +84,19 @@ class FitCheck {
     for (const float v : t.mean) require(std::isfinite(v), "the mean is not finite");
     require(t.eigenfunctions.empty() && t.weightScale.empty(), "there are global components beside clusters");
     require(c.weightBits == 8 || c.weightBits == 16, "weights are neither 8 nor 16 bits");
-    require(c.wideTerms >= 0 && c.wideTerms <= kMostTransferTerms, "the number of wide terms is out of range");
+    require(c.mapScales.empty() || c.mapScales.size() == mapsOf(c), "the map scales have the wrong size");
+    for (const float v : c.mapScales) require(v > 0.0f && std::isfinite(v), "a map scale is not positive and finite");
+    require(c.functions.columnScale == columnScales(t), "the functions' column scales are not those of the maps");
     require(c.clusters.size() <= kMostTransferClusters && c.functions.count() <= kMostTransferFunctions, "there are too many clusters or functions");
     std::size_t bytes = 0;
     require(c.functions.scale.size() == c.functions.count(), "the function scales have the wrong size");
     for (std::size_t f = 0; f < c.functions.count(); ++f) {
-      require(c.functions.bits[f] == 16 || c.functions.bits[f] == 8 || c.functions.bits[f] == 4, "a function has an unknown number of bits");
+      require(isFunctionKind(c.functions.bits[f]), "a function has an unknown number of bits");
       require(std::isfinite(c.functions.scale[f]) && c.functions.scale[f] > 0.0f, "a function scale is not positive and finite");
       bytes += PackedFunctions::bytesOf(c.functions.bits[f], t.columns());
     }
     require(c.functions.data.size() == bytes, "the functions have the wrong size");
+    require(c.functions.inRange(t.columns()), "a function has a value out of range");
     for (const float v : c.functions.unpack(t.columns())) require(std::isfinite(v), "a function is not finite");
     for (const auto& cluster : c.clusters) {
       require(cluster.terms >= 0 && cluster.terms <= t.terms, "a cluster has too many terms");
@@ -102,20 +106,9 @@ class FitCheck {
               "a cluster has the wrong size");
       require(std::isfinite(cluster.meanScale) && cluster.meanScale >= 0.0f, "a cluster's mean is not finite");
       for (const float v : cluster.weightScale) require(v > 0.0f && std::isfinite(v), "a weight scale is not positive and finite");
-      requireInBlocks(cluster);
+      for (const auto q : cluster.mean) require(q >= -32767, "a cluster's mean is out of range");
+      for (const auto q : cluster.components) require(q >= -127, "a component is out of range");
     }
-  }
-
-  /// What is packed must come back as it is.
-  void requireInBlocks(TransferCluster cluster) const {
-    const auto mean = cluster.mean;
-    const auto components = cluster.components;
-    const auto functions = mean.size();
-    roundToBlocks(cluster.mean.data(), functions, 127);
-    require(cluster.mean == mean, "a cluster's mean is not what its blocks hold");
-    for (int k = transfer_.clustered.wideTerms; k < cluster.terms; ++k)
-      roundToBlocks(cluster.components.data() + static_cast<std::size_t>(k) * functions, functions, 7);
-    require(cluster.components == components, "a cluster's components are not what their blocks hold");
   }
 
   void checkClusteredVertices(const ClusteredVertices& v, std::size_t count, const std::string& label) const {
@@ -124,10 +117,7 @@ class FitCheck {
     for (const auto cluster : v.cluster) require(cluster < c.clusters.size(), label + " names a cluster that does not exist");
     require(v.weights.size() == v.firstWeights(c.clusters).back(), label + " has the wrong number of weights");
     const int most = c.weightBits == 8 ? 127 : 32767;
-    std::size_t w = 0;
-    for (const auto cluster : v.cluster)
-      for (int k = 0; k < c.clusters[cluster].terms; ++k, ++w)
-        require(std::abs(static_cast<int>(v.weights[w])) <= (k < c.wideTerms ? most : 7), label + " has a weight out of range");
+    for (const auto q : v.weights) require(std::abs(static_cast<int>(q)) <= most, label + " has a weight out of range");
   }
 
   void checkPrimitive(std::size_t index) const {
@@ -164,18 +154,19 @@ class FitCheck {
 
   const Scene& scene_;
   const Transfer& transfer_;
+  const std::optional<CodedLists>& coded_;
   std::string where_;
 };
 
-/// More than the file will take, found before anything is allocated.
-std::uint64_t upperBound(const BakedScene& baked) {
+/// More than the file will take, found before it is put together.
+std::uint64_t upperBound(const BakedScene& baked, const CodedLists& coded) {
   const auto& t = baked.transfer;
   std::uint64_t size = std::uint64_t{1} << 20;
-  const auto perVertex = static_cast<std::uint64_t>(2 * std::max(t.paddedTerms(), t.terms) + t.directionCount + 50);
+  const auto perVertex = static_cast<std::uint64_t>(2 * t.paddedTerms() + t.directionCount + 48);
   for (const auto& p : baked.scene.primitives) size += p.positions.size() * perVertex + p.indices.size() * 4 + 4096;
   for (const auto& image : baked.scene.images) size += image.bytes.size() + 1024;
-  for (const auto& c : t.clustered.clusters) size += 2 * c.mean.size() + c.components.size() + 8 * c.weightScale.size();
-  return size + t.clustered.functions.data.size() + t.mean.size() * 4 + t.eigenfunctions.size() * 2;
+  for (const auto& c : t.clustered.clusters) size += 6 + 4 * c.weightScale.size();
+  return size + coded.bytes() + 5 * t.clustered.functions.count() + t.mean.size() * 4 + t.eigenfunctions.size() * 2;
 }
 
 /// Columns 4g..4g+3 of a row-major matrix.
@@ -205,72 +196,47 @@ void addVertexTransfer(const Transfer& transfer, const PrimitiveTransfer& values
   if (!transfer.fractionsInRow()) add("_VISIBILITY_", values.visibility, static_cast<std::size_t>(transfer.directionCount), kUnsignedByte);
 }
 
-/// Weights as they are stored, vertex by vertex.
-std::vector<std::uint8_t> packedWeights(const ClusteredTransfer& c, const ClusteredVertices& vertices) {
-  std::vector<std::uint8_t> bytes;
-  const std::int16_t* w = vertices.weights.data();
-  for (const auto cluster : vertices.cluster) {
-    const int terms = c.clusters[cluster].terms, wide = std::min(terms, c.wideTerms);
-    for (int k = 0; k < wide; ++k) {
-      bytes.push_back(static_cast<std::uint8_t>(w[k] & 255));
-      if (c.weightBits == 16) bytes.push_back(static_cast<std::uint8_t>(w[k] >> 8 & 255));
-    }
-    packNibbles(w + wide, static_cast<std::size_t>(terms - wide), bytes);
-    w += terms;
-  }
-  return bytes;
-}
-
-Json clusteredOf(const BakedScene& baked, const std::vector<std::size_t>& order, GltfWriter& writer) {
+Json clusteredOf(const BakedScene& baked, const CodedLists& coded, const std::vector<std::size_t>& order, GltfWriter& writer) {
   const auto& c = baked.transfer.clustered;
   Json out = Json::object();
   out["levels"] = Json::array();
   for (const auto& level : c.levels) out["levels"].push_back({{"sharpness", level.sharpness}, {"resolution", level.resolution}});
+  if (!c.mapScales.empty()) out["mapScales"] = c.mapScales;
   out["functionCount"] = c.functions.count();
   if (c.functions.count() > 0) {
     out["functionBits"] = writer.addArray(c.functions.bits, "function bits");
     out["functionScales"] = writer.addArray(c.functions.scale, "function scales");
-    out["functions"] = writer.addArray(c.functions.data, "functions");
+    out["functions"] = writer.addArray(coded.functions, "functions");
   }
   std::vector<std::uint16_t> terms;
   std::vector<float> meanScales, weightScales;
-  std::vector<std::uint8_t> means, components;
   for (const auto& cluster : c.clusters) {
     terms.push_back(static_cast<std::uint16_t>(cluster.terms));
     meanScales.push_back(cluster.meanScale);
-    packBlocks8(cluster.mean.data(), cluster.mean.size(), means);
-    const auto functions = cluster.mean.size();
-    for (int k = 0; k < cluster.terms; ++k) {
-      const std::int8_t* component = cluster.components.data() + static_cast<std::size_t>(k) * functions;
-      if (k < c.wideTerms) components.insert(components.end(), component, component + functions);
-      else packBlocks4(component, functions, components);
-    }
     weightScales.insert(weightScales.end(), cluster.weightScale.begin(), cluster.weightScale.end());
   }
   out["clusterCount"] = c.clusters.size();
   out["clusterTerms"] = writer.addArray(terms, "cluster terms");
-  if (!means.empty()) {
+  if (c.functions.count() > 0) {
     out["clusterMeanScales"] = writer.addArray(meanScales, "cluster mean scales");
-    out["clusterMeans"] = writer.addArray(means, "cluster means");
+    out["clusterMeans"] = writer.addArray(coded.means, "cluster means");
   }
   if (!weightScales.empty()) {
     out["weightScales"] = writer.addArray(weightScales, "weight scales");
-    out["components"] = writer.addArray(components, "components");
+    out["components"] = writer.addArray(coded.components, "components");
   }
   out["weightBits"] = c.weightBits;
-  out["wideTerms"] = c.wideTerms;
   out["primitives"] = Json::array();
   for (const auto p : order) {
-    const auto& vertices = baked.transfer.primitives[p].clustered;
     const std::string of = " of primitive " + std::to_string(out["primitives"].size());
-    Json primitive = {{"clusters", writer.addArray(vertices.cluster, "clusters" + of)}};
-    if (!vertices.weights.empty()) primitive["weights"] = writer.addArray(packedWeights(c, vertices), "weights" + of);
+    Json primitive = {{"clusters", writer.addArray(coded.clusters[p], "clusters" + of)}};
+    if (!coded.weights[p].empty()) primitive["weights"] = writer.addArray(coded.weights[p], "weights" + of);
     out["primitives"].push_back(primitive);
   }
   return out;
 }
 
-Json extensionOf(const BakedScene& baked, const std::vector<std::size_t>& order, GltfWriter& writer) {
+Json extensionOf(const BakedScene& baked, const CodedLists& coded, const std::vector<std::size_t>& order, GltfWriter& writer) {
   const Transfer& transfer = baked.transfer;
   Json out = Json::object();
   out["version"] = kTransferVersion;
@@ -282,7 +248,7 @@ Json extensionOf(const BakedScene& baked, const std::vector<std::size_t>& order,
   if (!transfer.directions.empty()) out["directions"] = writer.addArray(transfer.directions, "directions");
   if (!transfer.mean.empty()) out["mean"] = writer.addArray(transfer.mean, "mean");
   if (!transfer.clustered.empty()) {
-    out["clustered"] = clusteredOf(baked, order, writer);
+    out["clustered"] = clusteredOf(baked, coded, order, writer);
   } else if (transfer.terms > 0) {
     std::vector<std::uint16_t> halves;
     halves.reserve(transfer.eigenfunctions.size());
@@ -312,7 +278,10 @@ std::string signedJson(const Json& json) {
 void writeBakedScene(const std::filesystem::path& path, const BakedScene& baked, const std::string& generator) {
   const std::string where = path.string();
   FitCheck(baked, where).run();
-  if (upperBound(baked) > kLargestGlb)
+  std::optional<CodedLists> made;
+  if (!baked.coded) made = codedLists(baked.transfer);
+  const CodedLists& coded = made ? *made : *baked.coded;
+  if (upperBound(baked, coded) > kLargestGlb)
     throw Error(ExitCode::failed, where, "the baked scene is larger than 4 GiB, which a .glb cannot hold",
                 "bake fewer terms or split the scene");
 
@@ -324,7 +293,7 @@ void writeBakedScene(const std::filesystem::path& path, const BakedScene& baked,
   for (std::size_t i = 0; i < order.size(); ++i)
     addVertexTransfer(baked.transfer, baked.transfer.primitives[order[i]], baked.scene.primitives[order[i]].positions.size(),
                       places[i], writer);
-  writer.json["extensions"][kTransferExtension] = extensionOf(baked, order, writer);
+  writer.json["extensions"][kTransferExtension] = extensionOf(baked, coded, order, writer);
   writer.json["buffers"] = Json::array({{{"byteLength", aligned4(writer.binary().size())}}});
   writeFileAtomically(path, GltfWriter::container(signedJson(writer.json), writer.binary()));
 }

@@ -1,55 +1,61 @@
 #include "precompute/compression/encode_clusters.h"
 
-#include <Eigen/Cholesky>
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <optional>
 
-#include "assets/transfer/block_codec.h"
-#include "precompute/compression/allocate_terms.h"
 #include "precompute/compression/product.h"
 #include "precompute/parallel.h"
 
 namespace chiaro {
 namespace {
 
-constexpr std::size_t kRows = 4096;  // assigned at a time
-/// Of a function's energy, what rounding to blocks of 4 bits loses (measured on the built-in scene's functions).
-constexpr double kBlockLoss = 0.007;
-/// Rounding all functions so may add at most this part of the energy that they leave out.
-constexpr double kLossShare = 0.5;
+constexpr std::size_t kRows = 4096;  // of coordinates in memory at once
+constexpr double kSmallest = 1e-30;
+constexpr std::size_t kStride = 4;
 
-float largest(const std::vector<float>& values) {
+Eigen::Index index(std::size_t i) { return static_cast<Eigen::Index>(i); }
+
+double largest(const float* values, std::size_t count) {
   float most = 0.0f;
-  for (const float v : values) most = std::max(most, std::abs(v));
-  return most;
+  for (std::size_t i = 0; i < count; ++i) most = std::max(most, std::abs(values[i]));
+  return static_cast<double>(most);
 }
 
-TransferCluster rounded(const Cluster& cluster, int wideTerms) {
-  TransferCluster result;
-  result.terms = cluster.terms;
-  const auto columns = cluster.mean.size();
-  result.meanScale = columns == 0 ? 0.0f : std::max(largest(cluster.mean), 1e-30f);
-  for (const float m : cluster.mean) result.mean.push_back(static_cast<std::int16_t>(std::lrint(m / result.meanScale * 32767.0f)));
-  roundToBlocks(result.mean.data(), columns, 127);
-  for (std::size_t k = 0; k < static_cast<std::size_t>(cluster.terms); ++k) {
-    const float* row = cluster.components.data() + k * columns;
-    float most = 1e-30f;
-    for (std::size_t d = 0; d < columns; ++d) most = std::max(most, std::abs(row[d]));
-    for (std::size_t d = 0; d < columns; ++d) result.components.push_back(static_cast<std::int8_t>(std::lrint(row[d] / most * 127.0f)));
-    if (k >= static_cast<std::size_t>(wideTerms)) roundToBlocks(result.components.data() + k * columns, columns, 7);
+double standardDeviation(double energy, std::size_t rows) {
+  return std::sqrt(energy / static_cast<double>(std::max<std::size_t>(rows, 1)));
+}
+
+/// Root mean square of each map's sqrt(columnWeight): SSDF, levels, fractions.
+std::vector<float> mapScalesOf(const Transfer& transfer, const std::vector<float>& columnWeight) {
+  std::vector<std::size_t> sizes{transfer.texels()};
+  for (const auto& level : transfer.clustered.levels)
+    sizes.push_back(static_cast<std::size_t>(level.resolution) * static_cast<std::size_t>(level.resolution));
+  if (transfer.fractionsInRow()) sizes.push_back(static_cast<std::size_t>(transfer.directionCount));
+  std::vector<float> scales;
+  std::size_t first = 0;
+  double own = 1.0;
+  for (const auto size : sizes) {
+    double sum = 0.0;
+    for (std::size_t j = first; j < first + size; ++j) sum += static_cast<double>(columnWeight[j]);
+    const double root = std::sqrt(sum / static_cast<double>(std::max<std::size_t>(size, 1)));
+    if (scales.empty()) own = root;
+    scales.push_back(static_cast<float>(own / root));
+    first += size;
   }
-  return result;
+  return scales;
 }
 
 /// Least-squares weights of rows in the rounded components.
 class Fit {
  public:
   explicit Fit(const TransferCluster& cluster)
-      : mean_(static_cast<Eigen::Index>(cluster.mean.size())), components_(cluster.terms, static_cast<Eigen::Index>(cluster.mean.size())) {
+      : mean_(index(cluster.mean.size())), components_(cluster.terms, index(cluster.mean.size())) {
     for (Eigen::Index d = 0; d < mean_.size(); ++d)
       mean_[d] = cluster.meanScale * static_cast<float>(cluster.mean[static_cast<std::size_t>(d)]) / 32767.0f;
-    for (Eigen::Index i = 0; i < components_.size(); ++i) components_.data()[i] = static_cast<float>(cluster.components[static_cast<std::size_t>(i)]) / 127.0f;
+    for (Eigen::Index i = 0; i < components_.size(); ++i)
+      components_.data()[i] = static_cast<float>(cluster.components[static_cast<std::size_t>(i)]) / 127.0f;
     // Nearly orthogonal, so well conditioned, but for what rounding made of the weakest.
     gram_.compute(productTransposedB(components_, components_).cast<double>());
   }
@@ -65,119 +71,178 @@ class Fit {
   Eigen::LDLT<Eigen::MatrixXd> gram_;
 };
 
-float rounded(float value, float scale, float steps) { return std::clamp(std::nearbyint(value / scale), -steps, steps); }
-
-/// The scale of `steps` to either side that loses least: with few of them, it pays to cut the largest values off.
-float bestScale(const std::vector<float>& values, float steps) {
-  const float whole = std::max(largest(values) / steps, 1e-30f);
-  if (steps > 100.0f) return whole;
-  float best = whole;
-  double least = std::numeric_limits<double>::infinity();
-  for (const float share : {1.0f, 0.85f, 0.72f, 0.61f, 0.52f}) {
-    double loss = 0.0;
-    for (const float v : values) {
-      const double error = static_cast<double>(v - share * whole * rounded(v, share * whole, steps));
-      loss += error * error;
-    }
-    if (loss < least) best = share * whole;
-    least = std::min(least, loss);
-  }
-  return best;
-}
-
-/// Bytes left for components and weights when all else is stored.
-double bytesForTerms(const Transfer& transfer, const std::vector<Cluster>& clusters, std::size_t vertices, const ClusterEncoding& encoding) {
-  const auto& functions = transfer.clustered.functions;
-  const double shared = static_cast<double>(functions.data.size() + 5 * functions.count() + 4 * transfer.mean.size() + 12 * transfer.directions.size());
-  const double fractions = transfer.fractionsInRow() ? 0.0 : static_cast<double>(transfer.directionCount);
-  const double ofMeans = static_cast<double>(clusters.size() * (6 + blockBytes8(functions.count())));
-  const auto count = static_cast<double>(vertices);
-  return std::max(count * (encoding.bytesPerVertex - 2.0 - fractions) - shared - ofMeans, count * encoding.leastTermBytes);
-}
-
-void keepWhatFits(std::vector<Cluster>& clusters, const Transfer& transfer, std::size_t vertices, const ClusterEncoding& encoding) {
-  double rows = 0.0;
-  for (const auto& cluster : clusters) rows += static_cast<double>(cluster.rows);
-  const auto functions = transfer.clustered.functions.count();
-  const TermBytes cost{.wideTerms = encoding.wideTerms,
-                       .component = {static_cast<double>(functions + sizeof(float)), static_cast<double>(blockBytes4(functions) + sizeof(float))},
-                       .weight = {encoding.weightBits / 8.0, 0.5},
-                       .vertices = static_cast<double>(vertices) / std::max(rows, 1.0)};
-  dropWeakTerms(clusters, cost, bytesForTerms(transfer, clusters, vertices, encoding));
-}
-
-/// A function whose energy is small against what the functions leave out anyway is rounded coarsely.
-void packFunctions(const Pca& pca, int bits, PackedFunctions& packed) {
-  const auto columns = pca.mean.size();
-  double kept = 0.0;
-  for (const double e : pca.energy) kept += e;
-  const double discarded = std::max(pca.totalEnergy - kept, 1e-3 * kept);
-  for (std::size_t d = 0; d < static_cast<std::size_t>(pca.terms); ++d) {
-    const bool coarse = kBlockLoss * pca.energy[d] * pca.terms <= kLossShare * discarded;
-    packed.append(pca.functions.data() + d * columns, columns, bits != 0 ? bits : coarse ? 4 : 8);
-  }
-}
+double steps(double value, double step) { return std::log2(1.0 + std::abs(value) / step); }
 
 }  // namespace
 
-void encodeClusters(const Pca& pca, std::vector<Cluster> clusters, const CoordinateStore& coordinates,
-                    const std::vector<std::size_t>& primitiveVertices, const ClusterEncoding& encoding, Transfer& transfer) {
+ClusterEncoder::ClusterEncoder(const Pca& pca, const std::vector<Cluster>& clusters, const CoordinateStore& coordinates,
+                               const std::vector<std::size_t>& primitiveVertices, const std::vector<float>& columnWeight,
+                               const ClusterEncoding& encoding)
+    : pca_(pca),
+      clusters_(clusters),
+      coordinates_(coordinates),
+      primitiveVertices_(primitiveVertices),
+      columnWeight_(columnWeight),
+      encoding_(encoding) {
+  double rows = 0.0;
+  for (const auto& cluster : clusters) rows += static_cast<double>(cluster.rows);
+  verticesPerRow_ = static_cast<double>(coordinates.rows()) / std::max(rows, 1.0);
+  double sum = 0.0;
+  for (std::size_t j = 0; j < encoding.ssdfTexels; ++j) sum += static_cast<double>(columnWeight[j]);
+  ssdfRoot_ = std::sqrt(sum / static_cast<double>(encoding.ssdfTexels));
+  for (std::size_t first = 0; first < coordinates.rows(); first += kRows) {
+    const auto owners =
+        assignRows(clusters, coordinates.read(first, std::min(kRows, coordinates.rows() - first)), encoding.threads);
+    owner_.insert(owner_.end(), owners.begin(), owners.end());
+  }
+}
+
+double ClusterEncoder::functionStep(std::size_t function, double step) const {
+  const double deviation = standardDeviation(pca_.energy[function], encoding_.functionRows);
+  return step / std::max(std::sqrt(static_cast<double>(coordinates_.rows())) * deviation * ssdfRoot_, kSmallest);
+}
+
+int ClusterEncoder::termsKept(const Cluster& cluster, double step) const {
+  int kept = 0;
+  while (kept < cluster.terms &&
+         standardDeviation(cluster.energy[static_cast<std::size_t>(kept)], cluster.rows) > kLeastSteps * step)
+    ++kept;
+  return kept;
+}
+
+TransferCluster ClusterEncoder::rounded(const Cluster& cluster, double step) const {
+  TransferCluster result;
+  const auto columns = cluster.mean.size();
+  const double shared = step / std::sqrt(std::max(vertices(cluster), 1.0));
+  const double meanStep = std::max({shared, largest(cluster.mean.data(), columns) / 32767.0, kSmallest});
+  result.terms = termsKept(cluster, step);
+  result.meanScale = columns == 0 ? 0.0f : static_cast<float>(meanStep * 32767.0);
+  for (const float m : cluster.mean)
+    result.mean.push_back(static_cast<std::int16_t>(std::clamp(std::lrint(static_cast<double>(m) / meanStep), -32767L, 32767L)));
+  for (std::size_t k = 0; k < static_cast<std::size_t>(result.terms); ++k) {
+    const float* row = cluster.components.data() + k * columns;
+    const double own =
+        std::max({shared / standardDeviation(cluster.energy[k], cluster.rows), largest(row, columns) / 127.0, kSmallest});
+    for (std::size_t d = 0; d < columns; ++d)
+      result.components.push_back(
+          static_cast<std::int8_t>(std::clamp(std::lrint(static_cast<double>(row[d]) / own), -127L, 127L)));
+  }
+  return result;
+}
+
+double ClusterEncoder::numbersPerVertex() const {
+  double shared = static_cast<double>(pca_.functions.size()), own = 0.0;
+  for (const auto& cluster : clusters_) {
+    shared += static_cast<double>(cluster.mean.size() + cluster.components.size());
+    own += vertices(cluster) * cluster.terms;
+  }
+  return std::max((shared + own) / static_cast<double>(coordinates_.rows()), 1.0);
+}
+
+double ClusterEncoder::cost(double step) const {
+  const auto columns = pca_.mean.size();
+  std::vector<double> part(static_cast<std::size_t>(pca_.terms) + clusters_.size(), 0.0);
+  parallelBlocks(encoding_.threads, part.size(), [&](std::size_t i) {
+    double& sum = part[i];
+    if (i < static_cast<std::size_t>(pca_.terms)) {
+      if (encoding_.functionBits != 0) return;
+      const double own = functionStep(i, step);
+      for (std::size_t j = 0; j < columns; j += kStride)
+        sum += kStride * steps(static_cast<double>(pca_.functions[i * columns + j]), own);
+      return;
+    }
+    const auto& cluster = clusters_[i - static_cast<std::size_t>(pca_.terms)];
+    const double shared = step / std::sqrt(std::max(vertices(cluster), 1.0));
+    for (std::size_t d = 0; d < cluster.mean.size(); d += kStride)
+      sum += kStride * steps(static_cast<double>(cluster.mean[d]), shared);
+    for (int k = 0; k < termsKept(cluster, step); ++k) {
+      const double deviation = standardDeviation(cluster.energy[static_cast<std::size_t>(k)], cluster.rows);
+      const float* row = cluster.components.data() + static_cast<std::size_t>(k) * cluster.mean.size();
+      for (std::size_t d = 0; d < cluster.mean.size(); d += kStride)
+        sum += kStride * steps(static_cast<double>(row[d]) * deviation, shared);
+      sum += vertices(cluster) * (1.0 + steps(deviation, step));
+    }
+  });
+  double sum = 0.0;
+  for (const double p : part) sum += p;
+  return sum / 8.0;
+}
+
+void ClusterEncoder::encode(double step, Transfer& transfer) const {
   auto& out = transfer.clustered;
-  const auto rows = coordinates.rows();
-  transfer.mean = pca.mean;
+  const auto rows = coordinates_.rows(), columns = pca_.mean.size();
+  transfer.mean = pca_.mean;
   transfer.terms = 0;
-  out.weightBits = encoding.weightBits;
-  out.wideTerms = encoding.wideTerms;
-  packFunctions(pca, encoding.functionBits, out.functions);
-  if (encoding.bytesPerVertex > 0.0) keepWhatFits(clusters, transfer, rows, encoding);
-  std::vector<Fit> fits;
-  for (const auto& cluster : clusters) {
-    out.clusters.push_back(rounded(cluster, encoding.wideTerms));
-    fits.emplace_back(out.clusters.back());
-    transfer.terms = std::max(transfer.terms, cluster.terms);
+  out.weightBits = encoding_.weightBits;
+  out.functions = {};
+  out.clusters.clear();
+  out.mapScales = mapScalesOf(transfer, columnWeight_);
+  out.functions.columnScale = columnScales(transfer);
+  for (std::size_t d = 0; d < static_cast<std::size_t>(pca_.terms); ++d) {
+    const float* values = pca_.functions.data() + d * columns;
+    if (encoding_.functionBits != 0) {
+      out.functions.append(values, columns, encoding_.functionBits);
+      continue;
+    }
+    double most = 0.0;
+    for (std::size_t j = 0; j < columns; ++j)
+      most = std::max(most, static_cast<double>(std::abs(values[j]) / out.functions.columnScale[j]));
+    out.functions.appendSteps(values, columns, static_cast<float>(std::max({functionStep(d, step) * 2047.0, most, kSmallest})));
   }
 
+  std::vector<std::optional<Fit>> fits(clusters_.size());
+  out.clusters.resize(clusters_.size());
+  parallelBlocks(encoding_.threads, clusters_.size(), [&](std::size_t c) {
+    out.clusters[c] = rounded(clusters_[c], step);
+    fits[c].emplace(out.clusters[c]);
+  });
+  for (const auto& cluster : out.clusters) transfer.terms = std::max(transfer.terms, cluster.terms);
+
   const auto most = static_cast<std::size_t>(transfer.terms);
-  std::vector<std::uint16_t> owner(rows);
   std::vector<float> weights(rows * most);
   for (std::size_t first = 0; first < rows; first += kRows) {
     const auto count = std::min(kRows, rows - first);
-    const auto part = coordinates.read(first, count);
-    const auto owners = assignRows(clusters, part, encoding.threads);
-    std::copy(owners.begin(), owners.end(), owner.begin() + static_cast<std::ptrdiff_t>(first));
-    std::vector<std::vector<std::size_t>> members(clusters.size());
-    for (std::size_t i = 0; i < count; ++i) members[owners[i]].push_back(i);
-    parallelBlocks(encoding.threads, clusters.size(), [&](std::size_t c) {
-      if (clusters[c].terms == 0 || members[c].empty()) return;
-      RowMajor<float> own(static_cast<Eigen::Index>(members[c].size()), static_cast<Eigen::Index>(part.columns));
+    const auto part = coordinates_.read(first, count);
+    std::vector<std::vector<std::size_t>> members(clusters_.size());
+    for (std::size_t i = 0; i < count; ++i) members[owner_[first + i]].push_back(i);
+    parallelBlocks(encoding_.threads, clusters_.size(), [&](std::size_t c) {
+      if (out.clusters[c].terms == 0 || members[c].empty()) return;
+      RowMajor<float> own(index(members[c].size()), index(part.columns));
       for (std::size_t i = 0; i < members[c].size(); ++i)
-        own.row(static_cast<Eigen::Index>(i)) = Eigen::Map<const Eigen::RowVectorXf>(part.row(members[c][i]), own.cols());
-      const RowMajor<float> fitted = fits[c](own);
+        own.row(index(i)) = Eigen::Map<const Eigen::RowVectorXf>(part.row(members[c][i]), own.cols());
+      const RowMajor<float> fitted = (*fits[c])(own);
       for (std::size_t i = 0; i < members[c].size(); ++i)
-        std::copy_n(fitted.row(static_cast<Eigen::Index>(i)).data(), fitted.cols(), weights.data() + (first + members[c][i]) * most);
+        std::copy_n(fitted.row(index(i)).data(), fitted.cols(), weights.data() + (first + members[c][i]) * most);
     });
   }
 
-  const auto steps = [&](std::size_t k) { return k >= static_cast<std::size_t>(encoding.wideTerms) ? 7.0f : encoding.weightBits == 16 ? 32767.0f : 127.0f; };
-  std::vector<std::vector<std::size_t>> members(out.clusters.size());
-  for (std::size_t i = 0; i < rows; ++i) members[owner[i]].push_back(i);
-  parallelBlocks(encoding.threads, out.clusters.size(), [&](std::size_t c) {
-    std::vector<float> own(members[c].size());
-    for (std::size_t k = 0; k < static_cast<std::size_t>(out.clusters[c].terms); ++k) {
-      for (std::size_t i = 0; i < own.size(); ++i) own[i] = weights[members[c][i] * most + k];
-      out.clusters[c].weightScale.push_back(bestScale(own, steps(k)));
+  // A step of a weight is one of what it multiplies.
+  const double mostSteps = encoding_.weightBits == 16 ? 32767.0 : 127.0;
+  std::vector<std::vector<std::size_t>> members(clusters_.size());
+  for (std::size_t i = 0; i < rows; ++i) members[owner_[i]].push_back(i);
+  parallelBlocks(encoding_.threads, clusters_.size(), [&](std::size_t c) {
+    auto& cluster = out.clusters[c];
+    for (std::size_t k = 0; k < static_cast<std::size_t>(cluster.terms); ++k) {
+      double length = 0.0, widest = 0.0;
+      for (std::size_t d = 0; d < cluster.mean.size(); ++d)
+        length += std::pow(static_cast<double>(cluster.components[k * cluster.mean.size() + d]) / 127.0, 2);
+      for (const auto i : members[c]) widest = std::max(widest, static_cast<double>(std::abs(weights[i * most + k])));
+      cluster.weightScale.push_back(
+          static_cast<float>(std::max({step / std::max(std::sqrt(length), kSmallest), widest / mostSteps, kSmallest})));
     }
   });
 
-  transfer.primitives.resize(primitiveVertices.size());
+  transfer.primitives.resize(primitiveVertices_.size());
   std::size_t row = 0;
-  for (std::size_t p = 0; p < primitiveVertices.size(); ++p) {
+  for (std::size_t p = 0; p < primitiveVertices_.size(); ++p) {
     auto& vertices = transfer.primitives[p].clustered;
-    for (std::size_t i = 0; i < primitiveVertices[p]; ++i, ++row) {
-      vertices.cluster.push_back(owner[row]);
-      const auto& scale = out.clusters[owner[row]].weightScale;
+    vertices = {};
+    for (std::size_t i = 0; i < primitiveVertices_[p]; ++i, ++row) {
+      vertices.cluster.push_back(owner_[row]);
+      const auto& scale = out.clusters[owner_[row]].weightScale;
       for (std::size_t k = 0; k < scale.size(); ++k)
-        vertices.weights.push_back(static_cast<std::int16_t>(rounded(weights[row * most + k], scale[k], steps(k))));
+        vertices.weights.push_back(static_cast<std::int16_t>(
+            std::clamp(std::nearbyint(static_cast<double>(weights[row * most + k] / scale[k])), -mostSteps, mostSteps)));
     }
   }
 }

@@ -14,18 +14,19 @@ struct ModelSize {
   int clusters = 0;
 };
 
-/// A quarter for the functions, of 4 bits a value and `columns` values; a cluster for 80 vertices at kUsualBytes (measured on the built-in
-/// scene: from half to twice as many of either are within a twentieth of the best).
-/// leastFunctions: whatever the bytes.
-inline ModelSize modelSize(double bytesPerVertex, std::size_t vertices, std::size_t columns, int leastFunctions) {
-  const double all = bytesPerVertex * static_cast<double>(vertices), usual = bytesPerVertex / kUsualBytes;
-  const auto within = [](double value, double least, double most) { return static_cast<int>(std::clamp(value, least, std::max(least, most))); };
-  return {.functions = within(0.25 * all / (0.5625 * static_cast<double>(columns)), leastFunctions, std::min(320.0 * usual, 1024.0)),
-          .clusters = within(all / (80.0 * kUsualBytes), 1.0, std::min(1024.0 * usual, 4096.0))};
+/// A function for 128 vertices and a cluster for 64 at kUsualBytes, in proportion to the bytes; steps of rounding do the rest. Limits are those of time and of
+/// the renderer's memory. finer: sampled texels a stored one, a side; where that is 1 edges are uncertain by half a texel, and half as much of a model says as much.
+inline ModelSize modelSize(double bytesPerVertex, std::size_t vertices, int finer) {
+  const double usual = bytesPerVertex / kUsualBytes, count = static_cast<double>(vertices) * usual * (finer > 1 ? 1.0 : 0.5);
+  const auto within = [](double value, double least, double most) {
+    return static_cast<int>(std::clamp(value, least, std::max(least, most)));
+  };
+  return {.functions = within(count / 128.0, 32.0, std::clamp(512.0 * usual, 128.0, 1024.0)),
+          .clusters = within(count / 64.0, 1.0, std::min(1024.0 * usual, 4096.0))};
 }
 
 /// What a target error tries, and after these all terms of more functions.
-inline constexpr double kByteRungs[] = {32, 48, 72, 104, 152, 224, 328, 480};
-inline constexpr int kMostNeeded = 384;  // functions: the built-in scene's rows are within .02 of the truth
+inline constexpr double kByteRungs[] = {16, 24, 36, 52, 72, 104, 152, 224, 328, 480};
+inline constexpr int kMostNeeded = 640;  // functions: the built-in scene's rows are within .01 of what was traced
 
 }  // namespace chiaro

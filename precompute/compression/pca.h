@@ -31,6 +31,16 @@ struct FixedPointMatrix {
   void setRow(std::size_t i, const float* source);
 };
 
+/// A matrix in memory, as blocks.
+class MatrixBlocks : public RowBlocks {
+ public:
+  explicit MatrixBlocks(const FixedPointMatrix& matrix) : RowBlocks(matrix.rows, matrix.columns), matrix_(matrix) {}
+  const std::int16_t* block(std::size_t block, std::vector<std::byte>&) const override { return matrix_.row(block * kRows); }
+
+ private:
+  const FixedPointMatrix& matrix_;
+};
+
 struct PcaSettings {
   int terms = 48;
   int oversampling = 16;
@@ -62,6 +72,9 @@ Pca computePca(const RowBlocks& rows, float range, const std::vector<float>& col
                const std::function<void(double)>& progress = {});
 Pca computePca(const FixedPointMatrix& matrix, const std::vector<float>& columnWeight, const PcaSettings& settings,
                const std::function<void(double)>& progress = {});
+
+/// Terms with less are dropped (PcaSettings::leastRms).
+double leastEnergyOf(const PcaSettings& settings, std::size_t rows, const std::vector<float>& columnWeight);
 
 /// Bytes that computePca() needs at most beside the rows, its result included.
 std::size_t pcaMemory(std::size_t rows, std::size_t columns, const PcaSettings& settings);

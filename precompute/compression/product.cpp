@@ -7,6 +7,7 @@
 #include <Eigen/Cholesky>
 #include <cmath>
 #include <mutex>
+#include <stdexcept>
 
 // Not in every version's header.
 extern "C" {
@@ -14,6 +15,8 @@ void openblas_set_num_threads(int);
 char* openblas_get_config();
 char* openblas_get_corename();
 int openblas_get_parallel();  // 0: built for one thread, and then not safe to call from several
+void dpotrf_(const char* triangle, const int* n, double* matrix, const int* stride, int* info);
+void dpotri_(const char* triangle, const int* n, double* matrix, const int* stride, int* info);
 }
 
 namespace chiaro {
@@ -78,6 +81,28 @@ RowMajor<double> product(const RowMajorRef<double>& a, const RowMajorRef<double>
 RowMajor<float> productTransposedA(const RowMajorRef<float>& a, const RowMajorRef<float>& b) { return multiplied<float>(CblasTrans, CblasNoTrans, a, b); }
 RowMajor<double> productTransposedA(const RowMajorRef<double>& a, const RowMajorRef<double>& b) { return multiplied<double>(CblasTrans, CblasNoTrans, a, b); }
 RowMajor<float> productTransposedB(const RowMajorRef<float>& a, const RowMajorRef<float>& b) { return multiplied<float>(CblasNoTrans, CblasTrans, a, b); }
+
+RowMajor<float> gram(const RowMajorRef<float>& a) {
+  RowMajor<float> result = RowMajor<float>::Zero(a.cols(), a.cols());
+  if (a.size() == 0) return result;
+  const auto lock = callLock();
+  cblas_ssyrk(CblasRowMajor, CblasLower, CblasTrans, dimension(a.cols()), dimension(a.rows()), 1.0f, a.data(), dimension(a.outerStride()), 0.0f, result.data(),
+              dimension(result.outerStride()));
+  result.triangularView<Eigen::StrictlyUpper>() = result.transpose();
+  return result;
+}
+
+Eigen::MatrixXd inverseOfPositive(Eigen::MatrixXd matrix) {
+  const int n = dimension(matrix.rows());
+  if (n == 0) return matrix;
+  int info = 0;
+  const auto lock = callLock();
+  dpotrf_("L", &n, matrix.data(), &n, &info);
+  if (info == 0) dpotri_("L", &n, matrix.data(), &n, &info);
+  if (info != 0) throw std::domain_error("inverse: not a positive matrix");
+  matrix.triangularView<Eigen::StrictlyUpper>() = matrix.transpose();
+  return matrix;
+}
 
 RowMajor<float> orthonormalised(const RowMajor<float>& block) {
   return orthonormalisedOnce(orthonormalisedOnce(block.cast<double>())).cast<float>();

@@ -21,6 +21,11 @@ RowMajor<double> productTransposedA(const RowMajorRef<double>& a, const RowMajor
 /// a b^T
 RowMajor<float> productTransposedB(const RowMajorRef<float>& a, const RowMajorRef<float>& b);
 
+/// a^T a
+RowMajor<float> gram(const RowMajorRef<float>& a);
+/// Of a symmetric matrix with no eigenvalue at or below 0. Throws std::domain_error for another.
+Eigen::MatrixXd inverseOfPositive(Eigen::MatrixXd matrix);
+
 /// Orthonormal columns that span what `block`'s do (Cholesky QR, twice: Yamamoto, Nakatsukasa, Yanagisawa and Fukaya 2015). Columns
 /// that depend on those before them, to within the precision of float, come back as zero.
 RowMajor<float> orthonormalised(const RowMajor<float>& block);

@@ -74,7 +74,6 @@ std::string bakeJson(const BakeRun& run, const BakeReport& report) {
         {"functions", run.settings.functions},
         {"weight_bits", run.settings.weightBits},
         {"function_bits", run.settings.functionBits},
-        {"wide_terms", run.settings.wideTerms},
         {"bytes_per_vertex", run.settings.bytesPerVertex},
         {"target_error", run.settings.targetError},
         {"directions", run.settings.directionCount},

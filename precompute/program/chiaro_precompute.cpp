@@ -16,9 +16,9 @@
 #include "assets/scene/load_scene.h"
 #include "assets/transfer/transfer.h"
 #include "assets/transfer/transfer_format.h"
+#include "precompute/bake.h"
 #include "precompute/compression/blas_name.h"
 #include "precompute/elapsed.h"
-#include "precompute/bake.h"
 #include "precompute/memory_budget.h"
 #include "precompute/program/bake_json.h"
 
@@ -69,11 +69,10 @@ void declare(CLI::App& app, Options& options) {
   shown(app.add_option("--clusters", settings.clusters, "Clusters, 0 is by the number of vertices"), "N");
   shown(app.add_option("--functions", settings.functions, "Functions that clusters share, 0 is by the number of vertices"), "N");
   shown(app.add_option("--weight-bits", settings.weightBits, "Bits of a weight, 8 or 16"), "N");
-  shown(app.add_option("--wide-terms", settings.wideTerms, "Terms of a cluster kept in full; the weaker ones take 4 bits a number"), "N");
-  shown(app.add_option("--bytes", settings.bytesPerVertex, "Bytes a vertex, all counted; weak terms are dropped to fit; 0: 104, but 40 for terms at least; below 0: no limit"), "N");
+  shown(app.add_option("--bytes", settings.bytesPerVertex, "Bytes a vertex, all counted, that rounding has to fit; 0: 104, or more in small scenes; below 0: no limit"), "N");
   shown(app.add_option("--target-error", settings.targetError,
                        "As few bytes as keep the mean error of visible fractions at or below this; chooses bytes, functions and clusters; 0 is off"), "E");
-  shown(app.add_option("--function-bits", settings.functionBits, "Bits of a function's values: 16, 8, 4, or 0 for 8 and 4 by what each is worth"), "N");
+  shown(app.add_option("--function-bits", settings.functionBits, "Bits of a function's values: 16, 8, 4, or 0 for steps that follow from the bytes"), "N");
   shown(app.add_option("--resolution", settings.resolution, "Texels a side of the octahedral sphere, 16 to 256, a multiple of 4"), "N");
   shown(app.add_option("--sample-resolution", settings.samplingResolution,
                        "Texels a side traced where visibility changes: --resolution times a power of two; 0 is four times, at most 256"),

@@ -72,7 +72,7 @@ ReportFacts factsOf(const BakedScene& baked, const ReportOptions& options) {
   facts.resolution = baked.transfer.resolution;
   facts.terms = baked.transfer.terms;
   facts.directions = baked.transfer.directionCount;
-  facts.bytesPerVertex = baked.transfer.bytesPerVertex(facts.vertices);
+  facts.bytesPerVertex = baked.transfer.bytesPerVertex(facts.vertices, baked.coded ? &*baked.coded : nullptr);
   return facts;
 }
 

@@ -47,7 +47,7 @@ std::string timingsJson(const ViewOptions& options, const LoadedScene& scene, co
   json["exposure"] = settings.exposure;
   json["bytes"] = {{"file", scene.fileBytes},
                    {"gpu", gpuBytes},
-                   {"transfer_per_vertex", scene.baked.transfer.bytesPerVertex(geometry.vertexCount())}};
+                   {"transfer_per_vertex", scene.baked.transfer.bytesPerVertex(geometry.vertexCount(), scene.baked.coded ? &*scene.baked.coded : nullptr)}};
   json["seconds"] = {{"load", scene.seconds},
                      {"load_environment", environment.loadSeconds},
                      {"prepare_environment", environment.prepareSeconds},

@@ -38,7 +38,7 @@ std::string sceneLine(const LoadedScene& loaded) {
   char text[160];
   std::snprintf(text, sizeof text, "%zu vertices, %zu triangles, %.1f MB, %.0f bytes of transfer a vertex", scene.vertexCount(),
                 scene.triangleCount(), 1e-6 * static_cast<double>(loaded.fileBytes),
-                loaded.baked.transfer.bytesPerVertex(scene.vertexCount()));
+                loaded.baked.transfer.bytesPerVertex(scene.vertexCount(), loaded.baked.coded ? &*loaded.baked.coded : nullptr));
   return text;
 }
 

@@ -8,7 +8,6 @@
 #include <cstdlib>
 #include <fstream>
 
-#include "assets/transfer/block_codec.h"
 #include "assets/image/image.h"
 
 namespace chiaro::test {
@@ -118,7 +117,7 @@ Transfer anyTransfer(std::mt19937& random, const Scene& scene, int resolution, i
 
 /// What is stored of a row, in place of the global form.
 void makeClustered(std::mt19937& random, BakedScene& baked, const std::vector<VisibilityLevel>& levels, int functions,
-                   const std::vector<int>& terms, int weightBits, int wideTerms) {
+                   const std::vector<int>& terms, int weightBits) {
   std::uniform_real_distribution<float> uniform(-1.0f, 1.0f);
   Transfer& t = baked.transfer;
   t.terms = *std::max_element(terms.begin(), terms.end());
@@ -127,13 +126,18 @@ void makeClustered(std::mt19937& random, BakedScene& baked, const std::vector<Vi
   auto& c = t.clustered;
   c.levels = levels;
   c.weightBits = weightBits;
-  c.wideTerms = wideTerms;
+  // Of the SSDF, of each level, of the fractions.
+  if (!levels.empty()) c.mapScales = {1.0f};
+  for (std::size_t l = 0; l < levels.size(); ++l) c.mapScales.push_back(0.5f / static_cast<float>(l + 1));
+  if (!levels.empty()) c.mapScales.push_back(3.7f);
+  c.functions.columnScale = columnScales(t);
   t.mean.clear();
   for (std::size_t i = 0; i < t.columns(); ++i) t.mean.push_back(0.5f + 0.5f * uniform(random));
   for (int f = 0; f < functions; ++f) {
     std::vector<float> values;
     for (std::size_t i = 0; i < t.columns(); ++i) values.push_back(uniform(random));
-    c.functions.append(values.data(), values.size(), f % 3 == 0 ? 16 : f % 3 == 1 ? 8 : 4);
+    const int kinds[] = {16, 12, 8, 4};
+    c.functions.append(values.data(), values.size(), kinds[f % 4]);
   }
   const auto any = [&](int most) { return static_cast<int>(random() % static_cast<unsigned>(2 * most + 1)) - most; };
   for (const int k : terms) {
@@ -141,10 +145,8 @@ void makeClustered(std::mt19937& random, BakedScene& baked, const std::vector<Vi
     cluster.terms = k;
     cluster.meanScale = 0.1f;
     for (int f = 0; f < functions; ++f) cluster.mean.push_back(static_cast<std::int16_t>(any(32767)));
-    roundToBlocks(cluster.mean.data(), cluster.mean.size(), 127);
     for (int i = 0; i < k * functions; ++i) cluster.components.push_back(static_cast<std::int8_t>(any(127)));
-    for (int i = wideTerms; i < k; ++i) roundToBlocks(cluster.components.data() + i * functions, static_cast<std::size_t>(functions), 7);
-    for (int i = 0; i < k; ++i) cluster.weightScale.push_back((0.2f + 0.1f * uniform(random)) / (i >= wideTerms ? 7.0f : weightBits == 8 ? 127.0f : 32767.0f));
+    for (int i = 0; i < k; ++i) cluster.weightScale.push_back((0.2f + 0.1f * uniform(random)) / (weightBits == 8 ? 127.0f : 32767.0f));
   }
   for (std::size_t p = 0; p < t.primitives.size(); ++p) {
     auto& values = t.primitives[p];
@@ -153,7 +155,7 @@ void makeClustered(std::mt19937& random, BakedScene& baked, const std::vector<Vi
       values.clustered.cluster.push_back(static_cast<std::uint16_t>(random() % terms.size()));
     for (const auto cluster : values.clustered.cluster)
       for (int k = 0; k < c.clusters[cluster].terms; ++k)
-        values.clustered.weights.push_back(static_cast<std::int16_t>(any(k >= wideTerms ? 7 : weightBits == 8 ? 127 : 32767)));
+        values.clustered.weights.push_back(static_cast<std::int16_t>(any(weightBits == 8 ? 127 : 32767)));
   }
   decodeFractions(t);
 }
@@ -256,17 +258,17 @@ BakedScene tinyBake() {
   return baked;
 }
 
-BakedScene clusteredBake(bool levels, int weightBits, int wideTerms) {
+BakedScene clusteredBake(bool levels, int weightBits) {
   BakedScene baked = sampleBake();
   std::mt19937 random(20240608);
-  makeClustered(random, baked, levels ? std::vector<VisibilityLevel>{{3.0f, 4}, {10.5f, 6}} : std::vector<VisibilityLevel>{}, 7, {5, 0, 2}, weightBits, wideTerms);
+  makeClustered(random, baked, levels ? std::vector<VisibilityLevel>{{3.0f, 4}, {10.5f, 6}} : std::vector<VisibilityLevel>{}, 7, {5, 0, 2}, weightBits);
   return baked;
 }
 
 BakedScene tinyClusteredBake() {
   BakedScene baked = tinyBake();
   std::mt19937 random(20240609);
-  makeClustered(random, baked, {{3.0f, 1}, {10.5f, 2}}, 3, {1, 0}, 8, 4096);
+  makeClustered(random, baked, {{3.0f, 1}, {10.5f, 2}}, 4, {1, 0}, 8);
   baked.transfer.primitives[0].clustered.cluster = {0, 1, 0};
   baked.transfer.primitives[0].clustered.weights = {127, -3};
   decodeFractions(baked.transfer);

@@ -78,10 +78,10 @@ std::vector<std::uint8_t> tinyJpeg();
 
 /// Two meshes, three primitives, every kind of attribute, material, camera and light, and a transfer of `terms` terms.
 BakedScene sampleBake(int terms = 6);
-/// The scene of sampleBake() with clustered transfer of 7 functions of 16, 8 and 4 bits: clusters of 5, 0 and 2 terms. levels: as in a joint bake
-/// (the fractions are part of the rows); without, as in a clustered one.
-BakedScene clusteredBake(bool levels, int weightBits = 8, int wideTerms = 3);
-/// The triangle of tinyBake() with two levels, three functions and two clusters, of one and no term.
+/// The scene of sampleBake() with clustered transfer of 7 functions of 16, 12, 8 and 4 bits: clusters of 5, 0 and 2 terms. levels: as in a joint bake
+/// (the fractions are part of the rows), with map scales; without, as in a clustered one, without map scales.
+BakedScene clusteredBake(bool levels, int weightBits = 8);
+/// The triangle of tinyBake() with two levels, map scales, four functions of 16, 12, 8 and 4 bits and two clusters, of one and no term.
 BakedScene tinyClusteredBake();
 /// One triangle, no image, one term, four directions: small enough for a test of every byte.
 BakedScene tinyBake();

@@ -14,6 +14,9 @@ int main(int count, char** arguments) {
     const auto tiny = folder / "tiny.glb";
     chiaro::writeBakedScene(tiny, chiaro::test::tinyBake(), "Chiaro's tests");
     std::puts(tiny.c_str());
+    const auto clustered = folder / "clustered.glb";
+    chiaro::writeBakedScene(clustered, chiaro::test::clusteredBake(true), "Chiaro's tests");
+    std::puts(clustered.c_str());
     return 0;
   } catch (const chiaro::Error& error) {
     std::fprintf(stderr, "write_samples: %s\n", error.what());

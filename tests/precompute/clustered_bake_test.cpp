@@ -116,7 +116,6 @@ BakeSettings lossless(BakeSettings settings) {
   settings.clusters = 1;
   settings.functionBits = 16;
   settings.weightBits = 16;
-  settings.wideTerms = 256;
   settings.bytesPerVertex = -1.0;
   return settings;
 }
@@ -207,7 +206,7 @@ TEST(ClusteredBake, WeightBitsAddTheirRounding) {
     return static_cast<double>(sum);
   };
   EXPECT_EQ(stored(fine), stored(coarse));
-  EXPECT_LE(std::abs((fine.report.bytesPerVertex - coarse.report.bytesPerVertex) * static_cast<double>(fine.report.vertices) - stored(fine)), 1e-6);
+  EXPECT_LT(coarse.report.bytesPerVertex, fine.report.bytesPerVertex);
 }
 
 TEST(ClusteredBake, FunctionBitsAddTheirRounding) {
@@ -441,12 +440,11 @@ TEST(ClusteredBake, BytesAVertexAreAnUpperLimit) {
   settings.clusters = 8;
   settings.bytesPerVertex = -1.0;
   const auto whole = baked(scene, settings);
-  settings.bytesPerVertex = whole.report.bytesPerVertex - 10.0;  // of some 24 that terms take; the functions stay
+  settings.bytesPerVertex = 0.7 * whole.report.bytesPerVertex;
   const auto part = baked(scene, settings);
   expectFinite(part);
-  // Vertices that change their cluster take its number of weights.
   EXPECT_LE(part.report.bytesPerVertex, 1.01 * settings.bytesPerVertex);
-  EXPECT_GE(part.report.bytesPerVertex, settings.bytesPerVertex - 2.0) << "what is allowed is used";
+  EXPECT_GE(part.report.bytesPerVertex, 0.95 * settings.bytesPerVertex) << "what is allowed is used";
   EXPECT_GE(part["ssdf_rms_radians"], whole["ssdf_rms_radians"]);
   // Nothing but means fits; that is a bake too.
   settings.bytesPerVertex = 1.0;
@@ -498,7 +496,6 @@ TEST(ClusteredBake, RefusesWhatItCannotDo) {
   for (const int functions : {-1, 1025}) EXPECT_TRUE(refused([&](BakeSettings& s) { s.functions = functions; })) << functions;
   for (const int bits : {-8, 0, 4, 12, 32}) EXPECT_TRUE(refused([&](BakeSettings& s) { s.weightBits = bits; })) << bits;
   for (const int bits : {-4, 1, 5, 12, 32}) EXPECT_TRUE(refused([&](BakeSettings& s) { s.functionBits = bits; })) << bits;
-  for (const int terms : {-1, 257}) EXPECT_TRUE(refused([&](BakeSettings& s) { s.wideTerms = terms; })) << terms;
   for (const double bytes : {std::nan(""), HUGE_VAL}) EXPECT_TRUE(refused([&](BakeSettings& s) { s.bytesPerVertex = bytes; })) << bytes;
   for (const double error : {-0.1, 1.0, std::nan("")}) EXPECT_TRUE(refused([&](BakeSettings& s) { s.targetError = error; })) << error;
   EXPECT_TRUE(refused([&](BakeSettings& s) { s.targetError = 0.02, s.bytesPerVertex = 50.0; }));

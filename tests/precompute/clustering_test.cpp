@@ -1,5 +1,4 @@
 // Clustered principal components, on rows whose clusters are known and against components found another way.
-#include "precompute/compression/allocate_terms.h"
 #include "precompute/compression/clustering.h"
 
 #include <gtest/gtest.h>
@@ -263,43 +262,6 @@ TEST(Clustering, ComponentsThatHardlyMatterAreDropped) {
   for (float& v : rows.values) v *= 1e-5f;
   const auto clusters = clusterRows(rows, {.clusters = 1, .terms = 4, .leastRms = 1e-4, .threads = 1});
   EXPECT_EQ(clusters.at(0).terms, 0);
-}
-
-Cluster clusterOf(std::size_t rows, std::vector<double> energy) {
-  const auto terms = energy.size();
-  return {.rows = rows, .terms = static_cast<int>(terms), .mean = {0, 0, 0, 0}, .components = std::vector<float>(4 * terms, 1.0f), .energy = std::move(energy)};
-}
-
-TEST(DropWeakTerms, KeepsWhatIsWorthMostForItsBytes) {
-  // A component costs 4 bytes, a weight 1: 14 bytes a term in the first cluster, 104 in the second, 6 in the third.
-  const TermBytes cost{.wideTerms = 9, .component = {4, 0}, .weight = {1, 0}, .vertices = 1.0};
-  const std::vector<Cluster> all{clusterOf(10, {28, 14, 1.4}), clusterOf(100, {1040, 10.4}), clusterOf(2, {60, 0.6})};  // worth 2 1 .1, 10 .1, 10 .1
-  const auto kept = [&](double bytes) {
-    auto clusters = all;
-    dropWeakTerms(clusters, cost, bytes);
-    std::vector<int> terms;
-    for (const auto& c : clusters) {
-      terms.push_back(c.terms);
-      EXPECT_EQ(c.components.size(), 4u * static_cast<std::size_t>(c.terms));
-      EXPECT_EQ(c.energy.size(), static_cast<std::size_t>(c.terms));
-    }
-    return terms;
-  };
-  EXPECT_EQ(kept(-5), (std::vector<int>{0, 0, 0}));
-  EXPECT_EQ(kept(103), (std::vector<int>{0, 0, 0}));
-  EXPECT_EQ(kept(110), (std::vector<int>{0, 1, 1}));
-  EXPECT_EQ(kept(124), (std::vector<int>{1, 1, 1}));
-  EXPECT_EQ(kept(138), (std::vector<int>{2, 1, 1}));
-  EXPECT_EQ(kept(1e9), (std::vector<int>{3, 2, 2}));
-}
-
-// A narrow term may be worth more for its bytes than the wide one before it: it still does not come without that.
-TEST(DropWeakTerms, KeepsTheStrongestOfACluster) {
-  const TermBytes cost{.wideTerms = 1, .component = {100, 1}, .weight = {1, 0.5}, .vertices = 2.0};
-  std::vector<Cluster> clusters{clusterOf(10, {100, 50}), clusterOf(10, {90, 80})};
-  dropWeakTerms(clusters, cost, 120.0 + 11.0 + 5.0);
-  EXPECT_EQ(clusters[0].terms, 2);
-  EXPECT_EQ(clusters[1].terms, 0);
 }
 
 TEST(CoordinateStoreTest, ReadsTheFirstColumnsAlone) {

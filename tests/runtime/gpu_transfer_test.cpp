@@ -330,7 +330,7 @@ TEST(GpuTransfer, OneCluster) {
 
 TEST(GpuTransfer, GlobalForm) { expectSameOnGpu(baked(Compression::pca, 16), 5); }
 
-/// Clusters of 0 to 16 terms and random maps, two vertices in each.
+/// Clusters of 0 to 16 terms and random maps, two vertices in each. Functions are half floats and steps of 12 bits.
 BakedScene syntheticScene(std::size_t clusters, int weightBits) {
   std::mt19937 random(9);
   const auto uniform = [&](float low, float high) { return std::uniform_real_distribution<float>(low, high)(random); };
@@ -344,13 +344,15 @@ BakedScene syntheticScene(std::size_t clusters, int weightBits) {
   t.directions.assign(4, glm::vec3(0, 1, 0));
   c.levels = {{3.0f, 4}, {12.0f, 8}, {48.0f, 6}};  // the widest in the middle
   c.weightBits = weightBits;
+  c.mapScales = {1.0f, 0.4f, 2.5f, 0.7f, 1.5f};
+  c.functions.columnScale = columnScales(t);
   const auto columns = t.columns();
   for (std::size_t i = 0; i < columns; ++i) t.mean.push_back(uniform(0.2f, 0.8f));
   constexpr std::size_t kFunctions = 12;
   for (std::size_t f = 0; f < kFunctions; ++f) {
     std::vector<float> function(columns);
     for (float& v : function) v = uniform(-1, 1);
-    c.functions.append(function.data(), columns, 16);
+    c.functions.append(function.data(), columns, f % 3 == 0 ? 16 : 12);
   }
   const int steps = weightBits == 8 ? 127 : 32767;
   t.primitives.resize(2);

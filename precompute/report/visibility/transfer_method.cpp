@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "assets/transfer/coded_lists.h"
 #include "assets/transfer/row_decoder.h"
 #include "precompute/compression/encode.h"
 #include "precompute/report/visibility/map_methods.h"
@@ -41,16 +42,14 @@ class TransferMethod : public VisibilityMethod {
 class ClusteredMethod : public VisibilityMethod {
  public:
   explicit ClusteredMethod(const Transfer& transfer) : transfer_(transfer), decoder_(transfer) {
-    const auto& c = transfer.clustered;
+    const auto coded = codedLists(transfer);
     double own = 0.0, count = 0.0;
-    for (const auto& primitive : transfer.primitives)
-      for (const auto cluster : primitive.clustered.cluster) {
-        own += 2.0 + static_cast<double>(storedWeightBytes(c, c.clusters[cluster].terms));
-        count += 1.0;
-      }
+    for (const auto* lists : {&coded.clusters, &coded.weights})
+      for (const auto& list : *lists) own += static_cast<double>(list.size());
+    for (const auto& primitive : transfer.primitives) count += static_cast<double>(primitive.clustered.cluster.size());
     const double fractions = transfer.fractionsInRow() ? 0.0 : transfer.directionCount;
     bytes_.eachVertex = own / count;
-    bytes_.shared = (transfer.bytesPerVertex(static_cast<std::size_t>(count)) - fractions - bytes_.eachVertex) * count;
+    bytes_.shared = (transfer.bytesPerVertex(static_cast<std::size_t>(count), &coded) - fractions - bytes_.eachVertex) * count;
   }
 
   std::string name() const override {
