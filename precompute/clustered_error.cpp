@@ -75,6 +75,7 @@ std::vector<std::pair<std::string, double>> ClusteredTruth::errorOf(const Transf
   const auto count = vertices_.size();
   const auto& levels = rows_.layout().levels;
   const auto& grid = rows_.storedGrid();
+  const float softness = rows_.layout().softness, clamp = rows_.layout().clamp;
   std::vector<Sums> parts(count);
   parallelBlocks(threads_, blocks(count), [&](std::size_t block) {
     std::vector<float> stored(transfer.columns());
@@ -87,7 +88,8 @@ std::vector<std::pair<std::string, double>> ClusteredTruth::errorOf(const Transf
       const auto isAbove = [&](glm::vec3 w) { return viewpoint.doubleSided || glm::dot(w, viewpoint.normal) > 0.0f; };
       for (std::size_t t = 0; t < grid.texelCount; ++t) {
         if (!isAbove(grid.direction(t))) continue;
-        const double error = static_cast<double>(got[grid.rowMajor[t]] - want[grid.rowMajor[t]]), w = static_cast<double>(grid.solidAngle[t]);
+        const auto distance = [&](const float* row) { return std::clamp(lobe32::ssdfExpanded(row[grid.rowMajor[t]], softness), -clamp, clamp); };
+        const double error = static_cast<double>(distance(got) - distance(want)), w = static_cast<double>(grid.solidAngle[t]);
         sum.squared += w * error * error;
         sum.wrongSign += (got[grid.rowMajor[t]] < 0.0f) != (want[grid.rowMajor[t]] < 0.0f) ? w : 0.0;
         sum.solidAngle += w;
@@ -107,7 +109,7 @@ std::vector<std::pair<std::string, double>> ClusteredTruth::errorOf(const Transf
       for (const auto& lobes : axes_[i])
         for (std::size_t s = 0; s < kSharpness.size(); ++s) {
           const auto error = [&](const float* row) {
-            return std::abs(lobes.aboveHorizon[s] * visibleShare(row, grid.resolution, levels, glm::vec3(lobes.axis), kSharpness[s]) - lobes.visible[s]);
+            return std::abs(lobes.aboveHorizon[s] * visibleShare(row, grid.resolution, levels, softness, glm::vec3(lobes.axis), kSharpness[s]) - lobes.visible[s]);
           };
           sum.stored[s] += error(got);
           sum.uncompressed[s] += error(want);

@@ -4,8 +4,8 @@
 
 namespace chiaro {
 
-double visibleShare(const float* row, int resolution, const std::vector<VisibilityLevel>& levels, glm::vec3 axis, double sharpness) {
-  const auto fromSsdf = [&] { return lobe64::ssdfVisibleFraction(static_cast<double>(sampleOctahedral(row, resolution, axis)), sharpness); };
+double visibleShare(const float* row, int resolution, const std::vector<VisibilityLevel>& levels, float softness, glm::vec3 axis, double sharpness) {
+  const auto fromSsdf = [&] { return lobe64::ssdfVisibleFraction(lobe64::ssdfExpanded(static_cast<double>(sampleOctahedral(row, resolution, axis)), static_cast<double>(softness)), sharpness); };
   if (levels.empty()) return fromSsdf();
   const double ratio = levels.size() > 1 ? static_cast<double>(levels[1].sharpness / levels[0].sharpness) : 2.0;
   const auto source = lobe64::visibilitySource(sharpness, static_cast<int>(levels.size()), static_cast<double>(levels[0].sharpness), ratio);

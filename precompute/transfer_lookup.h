@@ -10,6 +10,7 @@
 namespace chiaro {
 
 /// Share of a normalised SG lobe above the vertex's horizon that arrives. row: the maps (SSDF, then levels).
-double visibleShare(const float* row, int resolution, const std::vector<VisibilityLevel>& levels, glm::vec3 axis, double sharpness);
+/// softness: of the SSDF (ClusteredTransfer::ssdfSoftness).
+double visibleShare(const float* row, int resolution, const std::vector<VisibilityLevel>& levels, float softness, glm::vec3 axis, double sharpness);
 
 }  // namespace chiaro

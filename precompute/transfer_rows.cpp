@@ -85,6 +85,7 @@ TraceTally TransferRows::operator()(std::span<const std::uint32_t> vertices, flo
       adaptive.at(layout_.resolution, storedAbove, storedVisible);
       lap(time, tally.visibilitySeconds);
       transform(viewpoint.normal, viewpoint.doubleSided, above[i], visible[i], storedAbove, storedVisible, row);
+      if (layout_.softness > 0.0f) std::transform(row, row + texels(), row, [&](float distance) { return lobe32::ssdfSoftened(distance, layout_.softness); });
       lap(time, tally.ssdfSeconds);
       texelsAbove(stored_, viewpoint.normal, cosine, storedAbove);
       fractions_(viewpoint, cosine, storedAbove, storedVisible, row + texels() + levelTexels());

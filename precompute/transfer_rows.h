@@ -23,13 +23,14 @@ struct TraceTally {
   void operator+=(const TraceTally& other);
 };
 
-/// A row: the SSDF (resolution^2, radians, clamped to [-clamp, clamp]), the levels' prefiltered visibility, the fixed lobes' visible fractions.
+/// A row: the SSDF (resolution^2, radians, clamped to [-clamp, clamp], softened), the levels' prefiltered visibility, the fixed lobes' visible fractions.
 class TransferRows {
  public:
   struct Layout {
     int resolution = 64;          ///< of the SSDF
     int samplingResolution = 64;  ///< of what is traced: `resolution` times a power of two
     float clamp = 0.0f;           ///< radians, at most pi / 2
+    float softness = 0.0f;        ///< of the stored SSDF (ClusteredTransfer::ssdfSoftness)
     float leastOccluder = 0.0f;   ///< radians; no occluder as wide is missed; 0: no such promise (AdaptiveSphere)
     std::vector<VisibilityLevel> levels;
     std::vector<glm::vec3> directions;

@@ -67,6 +67,8 @@ struct ClusteredTransfer {
   int weightBits = 8;                     ///< 8 or 16: a stored weight is in [-127, 127] or [-32767, 32767]
   /// One for each map of a row (SSDF, levels, then with levels the visible fractions), > 0: functions.columnScale by map; empty: all 1.
   std::vector<float> mapScales;
+  /// Radians: rows hold softness * tanh(SSDF / softness) (shaders/lobe/ssdf.glsl). 0: the SSDF itself.
+  float ssdfSoftness = 0.0f;
   bool empty() const { return clusters.empty(); }
 };
 

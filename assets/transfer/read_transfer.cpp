@@ -271,6 +271,11 @@ class BakedReader {
 
   void readMapScales(const json& c, const std::string& owner) {
     auto& out = baked_.transfer.clustered;
+    if (c.contains("ssdfSoftness")) {
+      const auto& softness = c["ssdfSoftness"];
+      out.ssdfSoftness = softness.is_number() ? softness.get<float>() : -1.0f;
+      if (!(out.ssdfSoftness > 0.0f) || !std::isfinite(out.ssdfSoftness)) fail("\"ssdfSoftness\" is not a number above 0");
+    }
     if (!c.contains("mapScales")) return;
     const json& scales = listOf(c, "mapScales", owner);
     if (scales.size() != mapsOf(out))

@@ -84,6 +84,7 @@ class FitCheck {
     for (const float v : t.mean) require(std::isfinite(v), "the mean is not finite");
     require(t.eigenfunctions.empty() && t.weightScale.empty(), "there are global components beside clusters");
     require(c.weightBits == 8 || c.weightBits == 16, "weights are neither 8 nor 16 bits");
+    require(c.ssdfSoftness >= 0.0f && std::isfinite(c.ssdfSoftness), "the SSDF's softness is not a number above 0");
     require(c.mapScales.empty() || c.mapScales.size() == mapsOf(c), "the map scales have the wrong size");
     for (const float v : c.mapScales) require(v > 0.0f && std::isfinite(v), "a map scale is not positive and finite");
     require(c.functions.columnScale == columnScales(t), "the functions' column scales are not those of the maps");
@@ -202,6 +203,7 @@ Json clusteredOf(const BakedScene& baked, const CodedLists& coded, const std::ve
   out["levels"] = Json::array();
   for (const auto& level : c.levels) out["levels"].push_back({{"sharpness", level.sharpness}, {"resolution", level.resolution}});
   if (!c.mapScales.empty()) out["mapScales"] = c.mapScales;
+  if (c.ssdfSoftness > 0.0f) out["ssdfSoftness"] = c.ssdfSoftness;
   out["functionCount"] = c.functions.count();
   if (c.functions.count() > 0) {
     out["functionBits"] = writer.addArray(c.functions.bits, "function bits");

@@ -17,11 +17,9 @@ struct ModelSize {
 /// A function for 128 vertices and a cluster for 64 at kUsualBytes, in proportion to the bytes; steps of rounding do the rest. Limits are those of time and of
 /// the renderer's memory. finer: sampled texels a stored one, a side; where that is 1 edges are uncertain by half a texel, and half as much of a model says as much.
 inline ModelSize modelSize(double bytesPerVertex, std::size_t vertices, int finer) {
-  const double usual = bytesPerVertex / kUsualBytes, count = static_cast<double>(vertices) * usual * (finer > 1 ? 1.0 : 0.5);
-  const auto within = [](double value, double least, double most) {
-    return static_cast<int>(std::clamp(value, least, std::max(least, most)));
-  };
-  return {.functions = within(count / 128.0, 32.0, std::clamp(512.0 * usual, 128.0, 1024.0)),
+  const double usual = bytesPerVertex / kUsualBytes * (finer > 1 ? 1.0 : 0.5), count = static_cast<double>(vertices) * usual;
+  const auto within = [](double value, double least, double most) { return static_cast<int>(std::clamp(value, least, std::max(least, most))); };
+  return {.functions = within(count / 128.0, 32.0, std::clamp(400.0 * usual, 128.0, 1024.0)),
           .clusters = within(count / 64.0, 1.0, std::min(1024.0 * usual, 4096.0))};
 }
 

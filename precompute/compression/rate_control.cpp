@@ -6,7 +6,7 @@
 namespace chiaro {
 namespace {
 
-constexpr double kLeastUsed = 0.95, kMostUsed = 1.01;
+constexpr double kLeastUsed = 0.95, kMostUsed = 1.0;
 constexpr double kUsualBytesPerCost = 1.85;  // a first guess
 constexpr int kTries = 5;
 

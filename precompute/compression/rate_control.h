@@ -12,7 +12,7 @@ struct RateTarget {
   double mostRounding = 1e3;    ///< mean squared error of a row that rounding may add about, whatever the bytes
 };
 
-/// Encodes with the finest step that fits, as far as it can be told: from nineteen twentieths of the bytes to one hundredth more, unless a limit of the
+/// Encodes with the finest step that fits, as far as it can be told: from nineteen twentieths of the bytes to all of them, unless a limit of the
 /// step or what does not depend on it stands against that.
 CodedLists encodeWithin(const ClusterEncoder& encoder, const RateTarget& target, std::size_t vertices, int threads,
                         Transfer& transfer);

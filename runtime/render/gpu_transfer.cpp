@@ -141,6 +141,7 @@ GpuTransfer::GpuTransfer(const BakedScene& baked) {
 /// Per vertex its cluster and where its weights begin; weights in words, padded to four a vector.
 void GpuTransfer::uploadWeights(const Transfer& transfer) {
   const auto& clusters = transfer.clustered.clusters;
+  softness_ = transfer.clustered.ssdfSoftness;
   weightBits_ = transfer.clustered.empty() ? 16 : transfer.clustered.weightBits;
   std::vector<std::uint32_t> words;
   std::vector<glm::uvec2> vertices;
@@ -216,7 +217,7 @@ std::vector<std::string> GpuTransfer::defines() const {
                                   number("LEVELS", occludes_ ? levels_.size() : 0)};
   if (!occludes_) return result;
   result.insert(result.end(), {number("SLOTS", slots_), number("WEIGHT_BITS", weightBits_), number("SSDF_RESOLUTION", resolution_),
-                               number("SSDF_COLUMNS", ssdf_.columns)});
+                               number("SSDF_COLUMNS", ssdf_.columns), number("SSDF_SOFTNESS", softness_)});
   if (levels_.empty()) return result;
   std::string resolutions = "LEVEL_RESOLUTIONS int[](", rows = "LEVEL_ROWS int[](";
   int row = 0, width = 0;

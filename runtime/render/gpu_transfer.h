@@ -42,6 +42,7 @@ class GpuTransfer {
 
   bool occludes_ = false;
   int directionVectors_ = 0, termVectors_ = 0, slots_ = 1, weightBits_ = 16, resolution_ = 0;
+  float softness_ = 0.0f;
   std::vector<VisibilityLevel> levels_;
   std::size_t vertexCount_ = 0;
   gl::Buffer visibility_, weights_, vertices_, clusters_;

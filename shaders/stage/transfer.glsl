@@ -2,7 +2,7 @@
 //
 // Set when the program is built for a scene (runtime/render/gpu_transfer.cpp): TERM_VECTORS, the most vec4 of terms a cluster has (0:
 // nothing is occluded); DIRECTION_VECTORS; SLOTS, 1 where there is one cluster, else 3, as the corners of a triangle may be in different
-// ones; WEIGHT_BITS; LEVELS of prefiltered visibility.
+// ones; WEIGHT_BITS; SSDF_SOFTNESS; LEVELS of prefiltered visibility.
 #include "shaders/lobe/prefiltered.glsl"
 #include "shaders/lobe/octahedral.glsl"
 
@@ -99,10 +99,10 @@ Transfer transferAt(uvec3 corners, vec3 barycentric) {
   return t;
 }
 
-// The SSDF at a world direction, radians: linear in the weights, so interpolated weights give the interpolated distance.
+// The SSDF at a world direction, radians: as stored it is linear in the weights, so interpolated weights give the interpolated one.
 float ssdfAt(Transfer t, vec3 direction) {
 #if TERM_VECTORS > 0
-  return lookUp(t, ssdfMeans, ssdfTerms, mapTexel(direction, SSDF_RESOLUTION), vec2(SSDF_RESOLUTION + 2), SSDF_COLUMNS);
+  return ssdfExpanded(lookUp(t, ssdfMeans, ssdfTerms, mapTexel(direction, SSDF_RESOLUTION), vec2(SSDF_RESOLUTION + 2), SSDF_COLUMNS), SSDF_SOFTNESS);
 #else
   return kHalfPi;
 #endif

@@ -128,6 +128,7 @@ void makeClustered(std::mt19937& random, BakedScene& baked, const std::vector<Vi
   c.weightBits = weightBits;
   // Of the SSDF, of each level, of the fractions.
   if (!levels.empty()) c.mapScales = {1.0f};
+  if (!levels.empty()) c.ssdfSoftness = 0.15f;
   for (std::size_t l = 0; l < levels.size(); ++l) c.mapScales.push_back(0.5f / static_cast<float>(l + 1));
   if (!levels.empty()) c.mapScales.push_back(3.7f);
   c.functions.columnScale = columnScales(t);

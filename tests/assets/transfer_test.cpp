@@ -136,6 +136,7 @@ void expectSame(const BakedScene& a, const BakedScene& b) {
   EXPECT_EQ(c.levels, d.levels);
   EXPECT_EQ(c.weightBits, d.weightBits);
   expectSameBits(c.mapScales, d.mapScales, "map scales");
+  EXPECT_EQ(c.ssdfSoftness, d.ssdfSoftness);
   expectSameBits(c.functions.columnScale, d.functions.columnScale, "column scales");
   expectSameBits(c.functions.bits, d.functions.bits, "function bits");
   expectSameBits(c.functions.scale, d.functions.scale, "function scales");
@@ -686,6 +687,8 @@ TEST(Transfer, FaultyWritersOfClustersAreFound) {
   EXPECT_THAT(withMember("clusterCount", 3), HasSubstr("instead of"));
   EXPECT_THAT(withMember("weightBits", 12), HasSubstr("neither 8 nor 16"));
   EXPECT_THAT(withMember("weightBits", 16), HasSubstr("the list of weights of"));
+  for (const auto& wrong : {ordered_json(0), ordered_json(-1), ordered_json("soft"), ordered_json(1e300)})
+    EXPECT_THAT(withMember("ssdfSoftness", wrong), HasSubstr("\"ssdfSoftness\" is not a number above 0"));
   EXPECT_THAT(withMember("mapScales", 1), HasSubstr("\"mapScales\" of \"clustered\" is not a list"));
   EXPECT_THAT(withMember("mapScales", ordered_json::array()), HasSubstr("has 0 map scales for 4 maps"));
   EXPECT_THAT(withMember("mapScales", {1, 1, 1, 1, 1}), HasSubstr("has 5 map scales for 4 maps"));
@@ -850,6 +853,7 @@ TEST(Transfer, WriterRefusesClustersThatDoNotFit) {
   EXPECT_THAT(refuses([](B b, C) { b.transfer.primitives[1].clustered.cluster[0] = 3; }), HasSubstr("cluster that does not exist"));
   EXPECT_THAT(refuses([](B b, C) { b.transfer.primitives[0].clustered.weights.pop_back(); }), HasSubstr("number of weights"));
   EXPECT_THAT(refuses([](B b, C) { b.transfer.primitives[0].clustered.weights[0] = 128; }), HasSubstr("weight out of range"));
+  EXPECT_THAT(refuses([](B, C c) { c.ssdfSoftness = -1.0f; }), HasSubstr("softness"));
   EXPECT_THAT(refuses([](B, C c) { c.mapScales.pop_back(); }), HasSubstr("map scales have the wrong size"));
   EXPECT_THAT(refuses([](B, C c) { c.mapScales[1] = 0.0f; }), HasSubstr("map scale is not positive"));
   EXPECT_THAT(refuses([](B, C c) { c.mapScales.clear(); }), HasSubstr("column scales are not those of the maps"));

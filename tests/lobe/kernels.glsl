@@ -57,6 +57,8 @@ KERNEL(sgConvolve) {
 
 KERNEL(sgHalfSpaceFraction) { y[0] = sgHalfSpaceFraction(x.v[0], x.v[1]); }
 KERNEL(sgHalfSpaceIntegral) { y[0] = sgHalfSpaceIntegral(x.v[0], x.v[1]); }
+KERNEL(ssdfSoftened) { y[0] = ssdfSoftened(x.v[0], x.v[1]); }
+KERNEL(ssdfExpanded) { y[0] = ssdfExpanded(x.v[0], x.v[1]); }
 KERNEL(ssdfVisibleFraction) { y[0] = ssdfVisibleFraction(x.v[0], x.v[1]); }
 // Sharpness, levels, first, ratio. The place among the levels is continuous where the level itself jumps.
 KERNEL(visibilitySource) {

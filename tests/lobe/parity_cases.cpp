@@ -225,6 +225,18 @@ void addHalfSpaceAndCosine(Registry& r) {
     out.push_back(g.chance(0.1) ? static_cast<float>(g.uniform(-3.1416, 3.1416)) : std::abs(s) <= 1 ? std::asin(s) : s);
     out.push_back(l);
   });
+  // 1 - tanh cancels, so that what is relative to the softness is absolute.
+  const auto ofSoftness = [](const float* x) { return std::max(1.0, static_cast<double>(x[1]) / kFloor); };
+  const auto distanceAndSoftness = [](Generator& g, auto& out) {
+    const double softness = g.chance(0.05) ? 0.0 : g.logUniform(0.01, 1.0);
+    out.push_back(static_cast<float>(g.chance(0.5) ? g.uniform(-1.6, 1.6) : softness * g.uniform(-4.0, 4.0)));
+    out.push_back(static_cast<float>(softness));
+  };
+  r.add(CHIARO_CASE(ssdfSoftened, 2, 1, scalars(1), "distance in radians, softness 0 or .01..1; 1e-5 of the softness", ofSoftness), distanceAndSoftness);
+  r.add(CHIARO_CASE(ssdfExpanded, 2, 1, scalars(1), "stored distance, softness 0 or .01..1; 2e-4 of the softness, as it is read near its end", [](const float* x) {
+          return std::max(1.0, 20.0 * static_cast<double>(x[1]) / kFloor);
+        }),
+        distanceAndSoftness);
   r.add(CHIARO_CASE(visibilitySource, 4, 3, scalars(3), "sharpness >= 0, 1..8 levels, ratio 1.5..8; shares: 1e-5 absolute, a level is stored to 4e-3",
                     [](const float*) { return 1.0 / kFloor; }),
         [](Generator& g, auto& out) {

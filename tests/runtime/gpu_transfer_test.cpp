@@ -197,8 +197,11 @@ Comparison compare(const Transfer& transfer, const std::vector<Reading>& reading
       return kHalf * static_cast<double>(sampleOctahedral(size.data() + first, resolution, d)) +
              filterError() * contrast(row.data() + first, resolution, d) + kFloat;
     };
-    const double ssdfBound = bound(0, rows.resolution);
-    ssdf.take(static_cast<double>(got[i].x) - static_cast<double>(sampleOctahedral(row.data(), rows.resolution, d)), ssdfBound);
+    const auto stored = static_cast<double>(sampleOctahedral(row.data(), rows.resolution, d)), softness = static_cast<double>(transfer.clustered.ssdfSoftness);
+    double ssdfBound = bound(0, rows.resolution);
+    // The steepest that a stored distance is expanded within its bound: d/dt of softness artanh(t / softness).
+    if (softness > 0.0) ssdfBound /= 1.0 - std::pow(std::min((std::abs(stored) + ssdfBound) / softness, 0.99505475), 2);
+    ssdf.take(static_cast<double>(got[i].x) - lobe64::ssdfExpanded(stored, softness), ssdfBound);
     if (rows.levels.empty()) continue;
     const auto l = static_cast<std::size_t>(r.corners.w);
     const auto first = rows.firstOf(l);
@@ -213,7 +216,7 @@ Comparison compare(const Transfer& transfer, const std::vector<Reading>& reading
                  static_cast<double>(got[i].w));
     double most = 0;
     for (std::size_t k = 0; k < rows.levels.size(); ++k) most = std::max(most, bound(rows.firstOf(k), rows.levels[k].resolution));
-    share.take(seen - visibleShare(row.data(), rows.resolution, rows.levels, d, sharpness),
+    share.take(seen - visibleShare(row.data(), rows.resolution, rows.levels, transfer.clustered.ssdfSoftness, d, sharpness),
                most + static_cast<double>(got[i].w) * ssdfBound * std::sqrt(sharpness / (2 * std::numbers::pi)));
   }
   return result;

@@ -64,7 +64,7 @@ class ClusteredMethod : public VisibilityMethod {
       if (point.weights[c] > 0.0f) decoder_.add(point.vertices[c], point.weights[c], row.data());
     return [this, &point, row = std::move(row)](const Lobe& lobe) {
       const double above = lobe64::sgHalfSpaceFraction(glm::dot(glm::dvec3(point.view.normal), glm::dvec3(lobe.axis)), lobe.sharpness);
-      return above * visibleShare(row.data(), transfer_.resolution, transfer_.clustered.levels, glm::vec3(lobe.axis), lobe.sharpness);
+      return above * visibleShare(row.data(), transfer_.resolution, transfer_.clustered.levels, transfer_.clustered.ssdfSoftness, glm::vec3(lobe.axis), lobe.sharpness);
     };
   }
 
