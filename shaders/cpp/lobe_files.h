@@ -10,5 +10,7 @@
 #include "shaders/lobe/equirect.glsl"
 #include "shaders/lobe/sh.glsl"
 #include "shaders/lobe/ggx.glsl"
+#include "shaders/lobe/ndf.glsl"
 #include "shaders/lobe/specular.glsl"
+#include "shaders/lobe/reflectance.glsl"
 #include "shaders/lobe/display.glsl"
