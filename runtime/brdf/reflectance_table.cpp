@@ -54,19 +54,24 @@ Slice sampleSlice(int kind, double parameter, double cosineOut) {
     const double u = (i + 0.5) / kRadii * top, r = kLinear * std::expm1(u), step = kLinear * std::exp(u) * top / kRadii;
     for (int j = 0; j < kAzimuths; ++j) {
       const double phi = (j + 0.5) / kAzimuths * lobe64::kPi;
-      const double sx = slice.width * r * std::cos(phi), sy = slice.width * r * std::sin(phi), hz = 1.0 / std::sqrt(1.0 + sx * sx + sy * sy);
+      const double sx = slice.width * r * std::cos(phi), sy = slice.width * r * std::sin(phi),
+                   hz = 1.0 / std::sqrt(1.0 + sx * sx + sy * sy);
       const Vec3 wh(sx * hz, sy * hz, hz);
       const double c = dot(wo, wh);
       if (c <= 1e-6) continue;
       const Vec3 wi = 2.0 * c * wh - wo;
       if (wi.z <= 0.0) continue;
       const double solidAngle = 4.0 * c * slice.width * slice.width * r * step * (2.0 * lobe64::kPi / kAzimuths) * hz * hz * hz;
-      const double row[6] = {wi.x, wi.y, wi.z, std::sqrt(solidAngle), lobe64::modelTimesCosine(model, wo, wi), lobe64::fresnelSchlickWeight(c)};
+      const double row[6] = {
+          wi.x, wi.y, wi.z, std::sqrt(solidAngle), lobe64::modelTimesCosine(model, wo, wi), lobe64::fresnelSchlickWeight(c)};
       for (int k = 0; k < 6; ++k) columns[k].push_back(row[k]);
     }
   }
-  const auto array = [&](int k) { return ArrayXd(Eigen::Map<const ArrayXd>(columns[k].data(), static_cast<Eigen::Index>(columns[k].size()))); };
-  slice.x = array(0), slice.y = array(1), slice.z = array(2), slice.root = array(3), slice.value = array(4), slice.fresnel = array(5);
+  const auto array = [&](int k) {
+    return ArrayXd(Eigen::Map<const ArrayXd>(columns[k].data(), static_cast<Eigen::Index>(columns[k].size())));
+  };
+  slice.x = array(0), slice.y = array(1), slice.z = array(2), slice.root = array(3), slice.value = array(4),
+  slice.fresnel = array(5);
   slice.peak = slice.value.maxCoeff();
   return slice;
 }
@@ -87,12 +92,13 @@ struct Lobe {
 Lobe lobeOf(const Shape& shape, const Slice& slice, const VectorXd& p, int group) {
   const int at = shape.first(group);
   const bool pair = group >= shape.singles;
-  return {slice.theta + p[at] * slice.width, pair ? p[at + 1] * slice.width : 0.0, std::exp(p[at + 1 + pair]) / (slice.width * slice.width),
-          p[at + 2 + pair] * p[at + 2 + pair] * slice.peak};
+  return {slice.theta + p[at] * slice.width, pair ? p[at + 1] * slice.width : 0.0,
+          std::exp(p[at + 1 + pair]) / (slice.width * slice.width), p[at + 2 + pair] * p[at + 2 + pair] * slice.peak};
 }
 
 Vec3 axisOf(const Lobe& lobe, double side) {
-  return Vec3(-std::sin(lobe.angle) * std::cos(lobe.elevation), side * std::sin(lobe.elevation), std::cos(lobe.angle) * std::cos(lobe.elevation));
+  return Vec3(-std::sin(lobe.angle) * std::cos(lobe.elevation), side * std::sin(lobe.elevation),
+              std::cos(lobe.angle) * std::cos(lobe.elevation));
 }
 
 ArrayXd distance2(const Slice& slice, const Vec3& axis) {
@@ -115,9 +121,12 @@ double residuals(const Shape& shape, const Slice& slice, const VectorXd& p, doub
       const ArrayXd value = lobe.amplitude * shapeValue;
       sum += value;
       if (slopes == nullptr) continue;
-      const double ce = std::cos(lobe.elevation), se = std::sin(lobe.elevation), ca = std::cos(lobe.angle), sa = std::sin(lobe.angle);
+      const double ce = std::cos(lobe.elevation), se = std::sin(lobe.elevation), ca = std::cos(lobe.angle),
+                   sa = std::sin(lobe.angle);
       slopes->col(at).array() += value * lobe.sharpness * slice.width * (-ca * ce * slice.x - sa * ce * slice.z) * scale;
-      if (pair) slopes->col(at + 1).array() += value * lobe.sharpness * slice.width * (sa * se * slice.x + sign * ce * slice.y - ca * se * slice.z) * scale;
+      if (pair)
+        slopes->col(at + 1).array() +=
+            value * lobe.sharpness * slice.width * (sa * se * slice.x + sign * ce * slice.y - ca * se * slice.z) * scale;
       slopes->col(at + 1 + pair).array() += value * (-0.5 * lobe.sharpness * d2) * scale;
       slopes->col(at + 2 + pair).array() += 2.0 * p[at + 2 + pair] * slice.peak * shapeValue * scale;
     }
@@ -130,7 +139,9 @@ double residuals(const Shape& shape, const Slice& slice, const VectorXd& p, doub
 /// Levenberg and Marquardt from `p`, held near `prior` by `pull`; returns the squared relative error.
 double refine(const Shape& shape, const Slice& slice, VectorXd& p, const VectorXd& prior, double pull, int steps) {
   const double norm = std::sqrt((slice.value * slice.root).square().sum());
-  const auto cost = [&](const VectorXd& at) { return residuals(shape, slice, at, norm, nullptr, nullptr) + pull * (at - prior).squaredNorm(); };
+  const auto cost = [&](const VectorXd& at) {
+    return residuals(shape, slice, at, norm, nullptr, nullptr) + pull * (at - prior).squaredNorm();
+  };
   VectorXd r;
   MatrixXd slopes;
   double damping = 1e-3, now = cost(p);
@@ -220,10 +231,15 @@ double widthAt(int i, int count) {
   return std::pow(least + (most - least) * i / (count - 1), 2);
 }
 double cosineAt(int j, int count) { return std::max(std::pow(static_cast<double>(j) / (count - 1), 2), kLeastCosine); }
-double parameterOf(int kind, double width) { return lobe64::modelHasExponent(kind) ? std::max(2.0 / (width * width) - 1.0, 1.0) : width; }
+double parameterOf(int kind, double width) {
+  return lobe64::modelHasExponent(kind) ? std::max(2.0 / (width * width) - 1.0, 1.0) : width;
+}
 
 constexpr Shape kTableShape{5, 2};
-constexpr double kPull = 1e-4;  // of a neighbour: far below the errors fitted, enough to keep idle lobes in place
+// Of a neighbour: far below the errors fitted, enough to keep idle lobes in place. These pulls and the view that a table starts from were found by
+// trial: with others some neighbours come to share out the work differently, and what lies between them suffers.
+double pullOf(int kind) { return kind == lobe64::kGgx ? 3e-4 : 1e-3; }
+constexpr double kStartColumn = 14.0 / 24.0;
 
 /// The split of each group's weight (the integral of its lobes) into what F0 scales and what Fresnel adds.
 void splitWeights(const Slice& slice, const VectorXd& p, std::vector<glm::dvec2>& weights) {
@@ -239,11 +255,18 @@ void splitWeights(const Slice& slice, const VectorXd& p, std::vector<glm::dvec2>
     basis.col(g) = (value * slice.root / integral).matrix();
     whole[g] = lobe.amplitude * integral;
   }
-  // Fresnel's part is what is fitted; the rest of the whole fit is F0's, so that both together stay the best fit for F = 1.
-  const ArrayXd grazing = slice.value * slice.fresnel;
-  const double share = (grazing * slice.root.square()).sum() / std::max((slice.value * slice.root.square()).sum(), 1e-300);
-  const VectorXd right = basis.transpose() * (grazing * slice.root).matrix();
-  const VectorXd fresnel = nonNegativeLeastSquares(basis.transpose() * basis, right, whole * share);
+  // Once more with the albedo as a further wish, a percent of it as dear as a squared error of 1e-3: it goes to the broad lobes, which pay least.
+  const auto refit = [&](const ArrayXd& value, const VectorXd& from) {
+    const double albedo = (value * slice.root.square()).sum();
+    if (!(albedo > 0.0)) return VectorXd(VectorXd::Zero(groups));
+    const double wish = 10.0 * (value * slice.root).square().sum() / (albedo * albedo);
+    const MatrixXd gram = (basis.transpose() * basis).array() + wish;
+    const VectorXd right = (basis.transpose() * (value * slice.root).matrix()).array() + wish * albedo;
+    return nonNegativeLeastSquares(gram, right, from);
+  };
+  whole = refit(slice.value, whole);
+  // Fresnel's part is fitted alike; the rest is F0's, so that both together stay the best fit for F = 1.
+  const VectorXd fresnel = refit(slice.value * slice.fresnel, 0.1 * whole);
   for (int g = 0; g < groups; ++g) {
     const double part = std::min(fresnel[g], whole[g]);
     weights[static_cast<std::size_t>(g)] = {whole[g] - part, part};
@@ -256,12 +279,16 @@ ReflectanceTable makeReflectanceTable(int kind, int widthCount, int cosineCount,
   ReflectanceTable table{kind, widthCount, cosineCount, {}};
   const int layer = widthCount * cosineCount;
   table.entries.resize(static_cast<std::size_t>(layer) * static_cast<std::size_t>(lobe64::kReflectanceEntries));
-  const auto sliceAt = [&](int i, int j) { return sampleSlice(kind, parameterOf(kind, widthAt(i, widthCount)), cosineAt(j, cosineCount)); };
+  const auto sliceAt = [&](int i, int j) {
+    return sampleSlice(kind, parameterOf(kind, widthAt(i, widthCount)), cosineAt(j, cosineCount));
+  };
 
   const auto store = [&](int i, int j, const Slice& slice, const VectorXd& p) {
     std::vector<glm::dvec2> weights(static_cast<std::size_t>(kTableShape.groups()));
     splitWeights(slice, p, weights);
-    const auto entry = [&](int k) -> glm::vec4& { return table.entries[static_cast<std::size_t>((k * cosineCount + j) * widthCount + i)]; };
+    const auto entry = [&](int k) -> glm::vec4& {
+      return table.entries[static_cast<std::size_t>((k * cosineCount + j) * widthCount + i)];
+    };
     glm::vec4 elevations(0.0f);
     for (int g = 0; g < kTableShape.groups(); ++g) {
       const Lobe lobe = lobeOf(kTableShape, slice, p, g);
@@ -277,12 +304,12 @@ ReflectanceTable makeReflectanceTable(int kind, int widthCount, int cosineCount,
   // lobe does the same work everywhere and entries interpolate. The two halves of a row are independent.
   std::vector<VectorXd> row(static_cast<std::size_t>(cosineCount));
   const auto at = [&](int j) -> VectorXd& { return row[static_cast<std::size_t>(j)]; };
-  const int start = static_cast<int>(std::lround(0.5 * (cosineCount - 1)));
+  const int start = static_cast<int>(std::lround(kStartColumn * (cosineCount - 1)));
   for (int i = 0; i < widthCount; ++i) {
     const auto fit = [&](int j, const VectorXd& prior) {
       const Slice slice = sliceAt(i, j);
       at(j) = prior;
-      refine(kTableShape, slice, at(j), prior, kPull, 40);
+      refine(kTableShape, slice, at(j), prior, pullOf(kind), 40);
       store(i, j, slice, at(j));
     };
     if (i == 0) {
@@ -292,18 +319,23 @@ ReflectanceTable makeReflectanceTable(int kind, int widthCount, int cosineCount,
     fit(start, VectorXd(at(start)));
     parallelFor(2, threads, [&](int half) {
       const int step = half == 0 ? -1 : 1;
-      for (int j = start + step; j >= 0 && j < cosineCount; j += step) fit(j, i == 0 ? at(j - step) : VectorXd(0.5 * (at(j - step) + at(j))));
+      for (int j = start + step; j >= 0 && j < cosineCount; j += step)
+        fit(j, i == 0 ? at(j - step) : VectorXd(0.5 * (at(j - step) + at(j))));
     });
   }
   return table;
 }
 
 std::vector<SliceLobe> reflectanceLobes(const ReflectanceTable& table, double width, double cosineOut) {
-  const glm::dvec2 coordinate = lobe64::reflectanceTableCoordinate(width, cosineOut) * lobe64::Vec2(table.widthCount - 1, table.cosineCount - 1);
-  const int i = std::clamp(static_cast<int>(coordinate.x), 0, table.widthCount - 2), j = std::clamp(static_cast<int>(coordinate.y), 0, table.cosineCount - 2);
+  const glm::dvec2 coordinate =
+      lobe64::reflectanceTableCoordinate(width, cosineOut) * lobe64::Vec2(table.widthCount - 1, table.cosineCount - 1);
+  const int i = std::clamp(static_cast<int>(coordinate.x), 0, table.widthCount - 2),
+            j = std::clamp(static_cast<int>(coordinate.y), 0, table.cosineCount - 2);
   const glm::dvec2 f = coordinate - glm::dvec2(i, j);
   const auto entry = [&](int k) {
-    const auto texel = [&](int di, int dj) { return glm::dvec4(table.entries[static_cast<std::size_t>((k * table.cosineCount + j + dj) * table.widthCount + i + di)]); };
+    const auto texel = [&](int di, int dj) {
+      return glm::dvec4(table.entries[static_cast<std::size_t>((k * table.cosineCount + j + dj) * table.widthCount + i + di)]);
+    };
     return glm::mix(glm::mix(texel(0, 0), texel(1, 0), f.x), glm::mix(texel(0, 1), texel(1, 1), f.x), f.y);
   };
   const Vec3 n(0, 0, 1), x(1, 0, 0), y(0, 1, 0);

@@ -14,14 +14,16 @@ namespace chiaro {
 /// directions, started from the texel beside it so that neighbours interpolate. Amplitudes are then split between what F0 scales
 /// and what Fresnel adds, (1 - wo.wh)^5, by non-negative least squares.
 struct ReflectanceTable {
-  int kind = 0;  ///< kCookTorrance .. kGgx
+  static constexpr int kWidths = 17, kCosines = 25;  ///< enough: interpolation costs less than the fit's own error
+  int kind = 0;                                      ///< kCookTorrance .. kGgx
   int widthCount = 0;
   int cosineCount = 0;
   std::vector<glm::vec4> entries;
 };
 
 /// Deterministic whatever `threads` (0: all cores). Some seconds of one core.
-ReflectanceTable makeReflectanceTable(int kind, int widthCount = 25, int cosineCount = 33, int threads = 0);
+ReflectanceTable makeReflectanceTable(int kind, int widthCount = ReflectanceTable::kWidths,
+                                      int cosineCount = ReflectanceTable::kCosines, int threads = 0);
 
 /// A lobe as it stands in the tangent frame of a viewer in the xz plane.
 struct SliceLobe {

@@ -5,6 +5,7 @@
 #include "shaders/lobe/ssdf.glsl"
 #include "shaders/lobe/prefiltered.glsl"
 #include "shaders/lobe/cosine.glsl"
+#include "shaders/lobe/warp_choice.glsl"
 #include "shaders/lobe/warp.glsl"
 #include "shaders/lobe/octahedral.glsl"
 #include "shaders/lobe/equirect.glsl"
@@ -13,4 +14,5 @@
 #include "shaders/lobe/ndf.glsl"
 #include "shaders/lobe/specular.glsl"
 #include "shaders/lobe/reflectance.glsl"
+#include "shaders/lobe/elongated.glsl"
 #include "shaders/lobe/display.glsl"

@@ -14,6 +14,7 @@
 #include "shaders/lobe/ndf.glsl"
 #include "shaders/lobe/specular.glsl"
 #include "shaders/lobe/reflectance.glsl"
+#include "shaders/lobe/elongated.glsl"
 #include "shaders/lobe/display.glsl"
 #endif
 
@@ -102,6 +103,19 @@ KERNEL(sgWarpLobe5) {
 KERNEL(sgWarpEnergy) {
   y[0] = sgWarpEnergy(x.v[0], 3);
   y[1] = sgWarpEnergy(x.v[0], 5);
+}
+
+KERNEL(sgWarpAnisotropic) {
+  AnisotropicGaussian g = sgWarpAnisotropic(lobeAt(x, 0), vectorAt(x, 5));
+  y[0] = asgEvaluate(g, vectorAt(x, 8));
+  y[1] = asgIntegral(g);
+}
+KERNEL(warpChoice) {
+  int any = warpChoice(x.v[0], x.v[1], false);
+  int closedForm = warpChoice(x.v[0], x.v[1], true);
+  y[0] = Real(any);
+  y[1] = Real(closedForm);
+  y[2] = Real(warpLobeCount(closedForm));
 }
 
 KERNEL(octahedralEncode) {
@@ -299,4 +313,21 @@ KERNEL(reflectanceTableLobe) {
   Vec2 at = reflectanceTableCoordinate(x.v[6], x.v[5]);
   y[6] = at.x;
   y[7] = at.y;
+}
+// Model (0..2), viewer (3..5), a light (6..8): the sum of the lobes there, and their integral.
+KERNEL(elongatedLobes) {
+  ReflectanceModel m = modelAt(x);
+  SphericalGaussian lobes[9];
+  Real sum = Real(0.0);
+  Real whole = Real(0.0);
+  int terms = m.kind == kGgx ? 3 : 1;
+  for (int term = 0; term < terms; ++term) {
+    elongatedLobes(m, vectorAt(x, 3), 9, terms, term, lobes);
+    for (int k = 0; k < 9; ++k) {
+      sum += sgEvaluate(lobes[k], vectorAt(x, 6));
+      whole += sgIntegral(lobes[k]);
+    }
+  }
+  y[0] = sum;
+  y[1] = whole;
 }

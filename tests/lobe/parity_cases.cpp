@@ -256,6 +256,27 @@ void addWarp(Registry& r) {
   r.add(CHIARO_CASE(sgWarpEnergy, 1, 2, scalars(2), "cosine in [-1, 1]"), [](Generator& g, auto& out) { out.push_back(g.spoil(static_cast<float>(g.uniform(-0.1, 1)))); });
 }
 
+void addAnisotropicWarp(Registry& r) {
+  // The axis is computed, so its rounding moves the exponent by 2 sqrt(sharpness) times itself.
+  Case c = CHIARO_CASE(sgWarpAnisotropic, 11, 2, scalars(2), "unit axes, sharpness .1..1e3: 5e-5 of max(value, 1e-3), the axis's rounding",
+                       [](const float*) { return 1e-3 / kFloor; });
+  c.tolerance = 5e-5;
+  r.add(std::move(c), [](Generator& g, auto& out) {
+    const glm::vec3 axis(g.direction());
+    push(out, axis);
+    const auto l = static_cast<float>(g.logUniform(0.1, 1e3));
+    out.insert(out.end(), {l, static_cast<float>(g.logUniform(0.1, 1))});
+    const glm::vec3 wo(g.tilted(axis, g.chance(0.1) ? g.logUniform(1e-6, 1) : g.uniform(0, 1.4)));
+    push(out, wo);
+    push(out, g.partner(2.0f * glm::dot(wo, axis) * axis - wo, l * 0.25));
+  });
+  // Off the borders between entries, which rounding may cross.
+  r.add(CHIARO_CASE(warpChoice, 2, 3, scalars(3), "sharpness 1e-2..1e8, cosine 0..1, off the borders of entries"), [](Generator& g, auto& out) {
+    out.push_back(static_cast<float>(std::exp2(std::floor(g.uniform(-6, 26)) + g.uniform(-0.49, 0.49))));
+    out.push_back(static_cast<float>((std::floor(g.uniform(0, 10)) + g.uniform(-0.49, 0.49)) / 10));
+  });
+}
+
 void addMaps(Registry& r) {
   const Fill anyDirection = [](Generator& g, auto& out) {
     glm::vec3 d(g.direction());
@@ -378,6 +399,21 @@ void addModels(Registry& r) {
     modelAndDirections(g, out);
     out.push_back(static_cast<float>(g.uniform(0, 1)));
   });
+  // A chain of mirrors, exponents and quotients: where a string's end meets the horizon one rounding moves an amplitude by 1e-4 of the peak.
+  Case elongated = CHIARO_CASE(elongatedLobes, 9, 2, scalars(2), "six models, widths .02..1, exponents 1..1e3, view cosine above .2: 2e-4 of max(value, .05 peak)",
+                               [=](const float* in) { return 0.05 / kFloor * peak(in); });
+  elongated.tolerance = 2e-4;
+  r.add(std::move(elongated), [](Generator& g, auto& out) {
+    const int kind = static_cast<int>(g.uniform(0, lobe64::kModelCount - 1e-9));
+    out.push_back(static_cast<float>(kind));
+    for (int i = 0; i < 2; ++i) out.push_back(static_cast<float>(lobe64::modelHasExponent(kind) ? g.logUniform(1, 1e3) : g.logUniform(0.02, 1)));
+    glm::dvec3 wo = g.direction();
+    wo.z = std::abs(wo.z) + 0.25;
+    wo = glm::normalize(wo);
+    const glm::dvec3 wh = halfVectorOf(g, out);
+    push(out, glm::vec3(wo));
+    push(out, glm::vec3(glm::normalize(2 * glm::dot(wo, wh) * wh - wo)));
+  });
   r.add(CHIARO_CASE(ndfLobes, 3, 6, scalars(6), "six models"), [](Generator& g, auto& out) { pushModel(g, out); });
   r.add(CHIARO_CASE(stringLobes, 2, 20, scalars(20), "sharpness 1e-3..1e8, ratio 1..1e4"), [](Generator& g, auto& out) {
     const double broad = g.logUniform(1e-3, 1e6);
@@ -457,6 +493,7 @@ const std::vector<Case>& allCases() {
     addSphericalGaussians(r);
     addHalfSpaceAndCosine(r);
     addWarp(r);
+    addAnisotropicWarp(r);
     addMaps(r);
     addGgx(r);
     addModels(r);
