@@ -8,6 +8,7 @@
 #include "assets/program/interrupt.h"
 #include "assets/program/program.h"
 #include "assets/program/progress_bar.h"
+#include "precompute/report/brdf/brdf_report.h"
 #include "precompute/report/comparison.h"
 #include "precompute/report/error_map.h"
 #include "precompute/report/report_options.h"
@@ -28,6 +29,8 @@ constexpr const char* kExamples = R"(Examples:
       exit code 5 when a picture is further than that from the truth
   chiaro-report visibility builtin:ornament
       ways to store visibility against traced rays; has options of its own, see chiaro-report visibility --help
+  chiaro-report brdf -o brdf
+      reflectance models as spherical Gaussians; see chiaro-report brdf --help
 
 Exit codes: 0 done, 1 failed, 2 wrong usage, 3 unreadable input, 4 unwritable output, 5 under --fail-under, 130 interrupted.)";
 
@@ -115,6 +118,7 @@ ExitCode report(int argc, char** argv) {
 int main(int argc, char** argv) {
   return chiaro::runMain("chiaro-report", [&] {
     if (argc > 1 && std::string_view(argv[1]) == "visibility") return chiaro::visibilityReport(argc - 1, argv + 1);
+    if (argc > 1 && std::string_view(argv[1]) == "brdf") return chiaro::brdfReport(argc - 1, argv + 1);
     return report(argc, argv);
   });
 }

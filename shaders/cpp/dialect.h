@@ -7,6 +7,7 @@ using Mat3 = glm::mat<3, 3, Real, glm::defaultp>;
 using IVec2 = glm::ivec2;
 
 using glm::abs;
+using glm::ceil;
 using glm::cos;
 using glm::cross;
 using glm::dot;

@@ -3,6 +3,7 @@
 // 2 cos times, cos = dot(wo, h): the warped lobe is elongated, the more so at grazing angles.
 #ifndef CHIARO_CPP
 #include "shaders/lobe/sg.glsl"
+#include "shaders/lobe/warp_choice.glsl"
 #endif
 
 // The warp is clamped here: below, the true lobe keeps its width in the plane of incidence while the formulas would make a needle.
@@ -18,6 +19,56 @@ FN Vec3 warpAxis(IN(Vec3) wo, IN(Vec3) halfAxis) { return Real(2.0) * dot(wo, ha
 FN SphericalGaussian sgWarpIsotropic(IN(SphericalGaussian) halfLobe, IN(Vec3) wo) {
   Real c = warpCosine(wo, halfLobe.axis);
   return sphericalGaussian(warpAxis(wo, halfLobe.axis), halfLobe.sharpness / (Real(4.0) * c), halfLobe.amplitude);
+}
+
+// The direction u, across the mirror direction and in the plane of wo and p, in which a tilt of p away from the viewer moves it; 0 where wo
+// is along p. The part of wo across p comes from wo -+ p, which is exact where wo is nearly +-p.
+FN Vec3 warpTangent(IN(Vec3) wo, IN(Vec3) p) {
+  Real cosine = dot(wo, p);
+  Vec3 e = cosine < Real(0.0) ? wo + p : wo - p;
+  Vec3 tangent = e - dot(e, p) * p;
+  Real sine = sqrt(dot(tangent, tangent));
+  Vec3 m = sine == Real(0.0) ? Vec3(Real(0.0), Real(0.0), Real(0.0)) : tangent / sine;
+  return -(sine * p + cosine * m);
+}
+
+// Anisotropic spherical Gaussian (Xu et al. 2013): amplitude max(w.z, 0) exp(-sharpnessX (w.x)^2 - sharpnessY (w.y)^2), x, y, z orthonormal.
+struct AnisotropicGaussian {
+  Vec3 x;
+  Vec3 y;
+  Vec3 z;
+  Real sharpnessX;
+  Real sharpnessY;
+  Real amplitude;
+};
+
+FN Real asgEvaluate(IN(AnisotropicGaussian) g, IN(Vec3) direction) {
+  Real x = dot(direction, g.x);
+  Real y = dot(direction, g.y);
+  return g.amplitude * max(dot(direction, g.z), Real(0.0)) * exp(-g.sharpnessX * x * x - g.sharpnessY * y * y);
+}
+
+// Integral over the sphere, amplitude pi / sqrt(sharpnessX sharpnessY); 1 % too large where both are 5, 58 % at 1.
+FN Real asgIntegral(IN(AnisotropicGaussian) g) { return g.amplitude * kPi / (sqrt(g.sharpnessX) * sqrt(g.sharpnessY)); }
+
+// One elongated lobe, exact in the limit of sharp lobes: sharpness l / 8 in the plane of incidence, l / (8 cos^2) across. Worse than the round
+// one for lobes broader than about sharpness 6. To be evaluated: no closed form integrates it against the SG light and visibility of a pixel.
+FN AnisotropicGaussian sgWarpAnisotropic(IN(SphericalGaussian) halfLobe, IN(Vec3) wo) {
+  Real c = warpCosine(wo, halfLobe.axis);
+  AnisotropicGaussian g;
+  g.z = warpAxis(wo, halfLobe.axis);
+  Vec3 u = warpTangent(wo, halfLobe.axis);
+  if (!(dot(u, u) > Real(0.5))) {
+    // Along the axis any tangent will do: the lobe is round.
+    u = cross(abs(g.z.x) < Real(0.7) ? Vec3(Real(1.0), Real(0.0), Real(0.0)) : Vec3(Real(0.0), Real(1.0), Real(0.0)), g.z);
+    u = u / sqrt(dot(u, u));
+  }
+  g.x = u;
+  g.y = cross(g.z, u);
+  g.sharpnessX = Real(0.125) * halfLobe.sharpness;
+  g.sharpnessY = Real(0.125) * halfLobe.sharpness / (c * c);
+  g.amplitude = halfLobe.amplitude;
+  return g;
 }
 
 // Three or five round lobes strung along the plane of incidence, L2-optimal, by c = cos from .1 to 1 in steps of .1:
@@ -79,18 +130,28 @@ FN SphericalGaussian sgWarpLobe(IN(SphericalGaussian) halfLobe, IN(Vec3) wo, IN(
   Real amplitude = warpTable(c, count, 2 + distance);
   Real sharpness = Real(0.25) * l / (width * width);
 
-  // r and the direction u in which a tilt away from the viewer moves it, both in the plane of wo and p. The part of wo across p
-  // comes from wo -+ p, which is exact where wo is nearly +-p.
-  Real cosine = dot(wo, p);
   Vec3 r = warpAxis(wo, p);
-  Vec3 e = cosine < Real(0.0) ? wo + p : wo - p;
-  Vec3 tangent = e - dot(e, p) * p;
-  Real sine = sqrt(dot(tangent, tangent));
-  Vec3 m = sine == Real(0.0) ? Vec3(Real(0.0), Real(0.0), Real(0.0)) : tangent / sine;
-  Vec3 u = -(sine * p + cosine * m);
+  Vec3 u = warpTangent(wo, p);
 
   Real deviation = l < Real(16.0) ? Real(0.5) : Real(2.0) / sqrt(l);
   Real angle = Real(k) * warpTable(c, count, 1) * deviation;
   Vec3 axis = sinQuarter(kHalfPi - abs(angle)) * r + sinQuarter(angle) * u;
   return sphericalGaussian(axis, sharpness, halfLobe.amplitude * amplitude);
 }
+
+// Ways to warp.
+CONST int kWarpIsotropic = 0;
+CONST int kWarpAnisotropic = 1;
+CONST int kWarpThree = 2;
+CONST int kWarpFive = 3;
+
+// The way of least measured error for a half-vector lobe of this sharpness at c = dot(wo, axis). `closedForm`: only ways whose integrals
+// against SG light and visibility are known, round lobes. Nearest entry of the table.
+FN int warpChoice(IN(Real) sharpness, IN(Real) c, IN(bool) closedForm) {
+  int row = int(clampReal(log(max(sharpness, Real(1.0))) * Real(1.44269504) + Real(0.5), Real(0.0), Real(16.0)));
+  int column = int(clampReal(Real(10.0) * c - Real(0.5), Real(0.0), Real(9.0)));
+  return kWarpChoices[(closedForm ? 170 : 0) + 10 * row + column];
+}
+
+// How many lobes a way takes.
+FN int warpLobeCount(IN(int) way) { return way == kWarpThree ? 3 : way == kWarpFive ? 5 : 1; }

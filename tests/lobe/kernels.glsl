@@ -11,7 +11,10 @@
 #include "shaders/lobe/equirect.glsl"
 #include "shaders/lobe/sh.glsl"
 #include "shaders/lobe/ggx.glsl"
+#include "shaders/lobe/ndf.glsl"
 #include "shaders/lobe/specular.glsl"
+#include "shaders/lobe/reflectance.glsl"
+#include "shaders/lobe/elongated.glsl"
 #include "shaders/lobe/display.glsl"
 #endif
 
@@ -102,6 +105,19 @@ KERNEL(sgWarpLobe5) {
 KERNEL(sgWarpEnergy) {
   y[0] = sgWarpEnergy(x.v[0], 3);
   y[1] = sgWarpEnergy(x.v[0], 5);
+}
+
+KERNEL(sgWarpAnisotropic) {
+  AnisotropicGaussian g = sgWarpAnisotropic(lobeAt(x, 0), vectorAt(x, 5));
+  y[0] = asgEvaluate(g, vectorAt(x, 8));
+  y[1] = asgIntegral(g);
+}
+KERNEL(warpChoice) {
+  int any = warpChoice(x.v[0], x.v[1], false);
+  int closedForm = warpChoice(x.v[0], x.v[1], true);
+  y[0] = Real(any);
+  y[1] = Real(closedForm);
+  y[2] = Real(warpLobeCount(closedForm));
 }
 
 KERNEL(octahedralEncode) {
@@ -250,4 +266,70 @@ KERNEL(anisotropicPart) {
     y[6 * i + 4] = part.weight;
     y[6 * i + 5] = part.fresnelWeight;
   }
+}
+
+// Kind, widths or exponents.
+FN ReflectanceModel modelAt(IN(KernelInput) x) { return reflectanceModel(int(x.v[0]), x.v[1], x.v[2]); }
+KERNEL(logOnePlus) { y[0] = logOnePlus(x.v[0]); }
+KERNEL(ndfValue) { y[0] = ndfValue(modelAt(x), vectorAt(x, 3)); }
+KERNEL(smoothTimesCosine) { y[0] = smoothTimesCosine(modelAt(x), vectorAt(x, 3), vectorAt(x, 6)); }
+// F0 is one number for all channels but the last.
+KERNEL(reflectanceTimesCosine) {
+  Vec3 value = reflectanceTimesCosine(modelAt(x), Vec3(x.v[9], Real(0.0), Real(1.0)), vectorAt(x, 3), vectorAt(x, 6));
+  y[0] = value.x;
+  y[1] = value.y;
+  y[2] = value.z;
+}
+KERNEL(ndfLobes) {
+  ReflectanceModel m = modelAt(x);
+  Vec2 paper = ndfPaperLobe(m.kind, m.x);
+  Vec2 best = ndfBestLobe(m.kind, m.x);
+  Vec2 second = ndfMixtureLobe(m.kind, m.x, 3, 1);
+  y[0] = paper.x;
+  y[1] = paper.y;
+  y[2] = best.x;
+  y[3] = best.y;
+  y[4] = second.x;
+  y[5] = second.y;
+}
+KERNEL(stringLobes) {
+  for (int i = 0; i < 5; ++i) {
+    StringLobe ours = ndfStringLobe(x.v[0], x.v[1], 5, i);
+    StringLobe paper = paperStringLobe(x.v[0], x.v[1], 5, i);
+    y[4 * i] = ours.angle;
+    y[4 * i + 1] = ours.amplitude;
+    y[4 * i + 2] = paper.angle;
+    y[4 * i + 3] = paper.amplitude;
+  }
+}
+// Table entry (0..3), elevation, cosine to the viewer, width, in the frame n = z, x = x.
+KERNEL(reflectanceTableLobe) {
+  SpecularLobe lobe = reflectanceTableLobe(Vec4(x.v[0], x.v[1], x.v[2], x.v[3]), x.v[4], Vec3(Real(0.0), Real(0.0), Real(1.0)),
+                                           Vec3(Real(1.0), Real(0.0), Real(0.0)), Vec3(Real(0.0), Real(1.0), Real(0.0)), x.v[5], x.v[6]);
+  y[0] = lobe.axis.x;
+  y[1] = lobe.axis.y;
+  y[2] = lobe.axis.z;
+  y[3] = lobe.sharpness;
+  y[4] = lobe.weight;
+  y[5] = lobe.fresnelWeight;
+  Vec2 at = reflectanceTableCoordinate(x.v[6], x.v[5]);
+  y[6] = at.x;
+  y[7] = at.y;
+}
+// Model (0..2), viewer (3..5), a light (6..8): the sum of the lobes there, and their integral.
+KERNEL(elongatedLobes) {
+  ReflectanceModel m = modelAt(x);
+  SphericalGaussian lobes[9];
+  Real sum = Real(0.0);
+  Real whole = Real(0.0);
+  int terms = m.kind == kGgx ? 3 : 1;
+  for (int term = 0; term < terms; ++term) {
+    elongatedLobes(m, vectorAt(x, 3), 9, terms, term, lobes);
+    for (int k = 0; k < 9; ++k) {
+      sum += sgEvaluate(lobes[k], vectorAt(x, 6));
+      whole += sgIntegral(lobes[k]);
+    }
+  }
+  y[0] = sum;
+  y[1] = whole;
 }

@@ -268,6 +268,27 @@ void addWarp(Registry& r) {
   r.add(CHIARO_CASE(sgWarpEnergy, 1, 2, scalars(2), "cosine in [-1, 1]"), [](Generator& g, auto& out) { out.push_back(g.spoil(static_cast<float>(g.uniform(-0.1, 1)))); });
 }
 
+void addAnisotropicWarp(Registry& r) {
+  // The axis is computed, so its rounding moves the exponent by 2 sqrt(sharpness) times itself.
+  Case c = CHIARO_CASE(sgWarpAnisotropic, 11, 2, scalars(2), "unit axes, sharpness .1..1e3: 5e-5 of max(value, 1e-3), the axis's rounding",
+                       [](const float*) { return 1e-3 / kFloor; });
+  c.tolerance = 5e-5;
+  r.add(std::move(c), [](Generator& g, auto& out) {
+    const glm::vec3 axis(g.direction());
+    push(out, axis);
+    const auto l = static_cast<float>(g.logUniform(0.1, 1e3));
+    out.insert(out.end(), {l, static_cast<float>(g.logUniform(0.1, 1))});
+    const glm::vec3 wo(g.tilted(axis, g.chance(0.1) ? g.logUniform(1e-6, 1) : g.uniform(0, 1.4)));
+    push(out, wo);
+    push(out, g.partner(2.0f * glm::dot(wo, axis) * axis - wo, l * 0.25));
+  });
+  // Off the borders between entries, which rounding may cross.
+  r.add(CHIARO_CASE(warpChoice, 2, 3, scalars(3), "sharpness 1e-2..1e8, cosine 0..1, off the borders of entries"), [](Generator& g, auto& out) {
+    out.push_back(static_cast<float>(std::exp2(std::floor(g.uniform(-6, 26)) + g.uniform(-0.49, 0.49))));
+    out.push_back(static_cast<float>((std::floor(g.uniform(0, 10)) + g.uniform(-0.49, 0.49)) / 10));
+  });
+}
+
 void addMaps(Registry& r) {
   const Fill anyDirection = [](Generator& g, auto& out) {
     glm::vec3 d(g.direction());
@@ -335,6 +356,84 @@ void addGgx(Registry& r) {
   r.add(CHIARO_CASE(cosineLobes, 3, 20, scalars(20), "constants"), [](Generator& g, auto& out) { push(out, glm::vec3(0, 0, g.uniform(0.5, 1))); });
 }
 
+/// Kind, then widths 1e-4..1 or exponents 1..1e6; some at the ends and beyond.
+void pushModel(Generator& g, std::vector<float>& out) {
+  const int kind = static_cast<int>(g.uniform(0, lobe64::kModelCount - 1e-9));
+  out.push_back(static_cast<float>(kind));
+  const bool exponent = lobe64::modelHasExponent(kind);
+  for (int i = 0; i < 2; ++i) {
+    const double value = exponent ? g.logUniform(1, 1e6) : g.logUniform(1e-4, 1);
+    out.push_back(g.chance(0.03) ? g.pick({0.0f, 1.0f, kDenormal, 2.0f, 1e-4f, 1e6f, 1e10f, kNan}) : static_cast<float>(value));
+  }
+}
+
+lobe64::ReflectanceModel modelOf(const float* in) {
+  return lobe64::reflectanceModel(static_cast<int>(in[0]), static_cast<double>(in[1]), static_cast<double>(in[2]));
+}
+
+double widthOf(const lobe64::ReflectanceModel& m, double x) { return lobe64::modelHasExponent(m.kind) ? std::sqrt(2 / (x + 1)) : x; }
+
+/// A half vector where the distribution still counts, or anywhere.
+glm::dvec3 halfVectorOf(Generator& g, const std::vector<float>& out) {
+  const auto m = modelOf(&out[out.size() - 3]);
+  if (g.chance(0.2) || std::isnan(m.x + m.y)) return g.direction();
+  const double reach = g.uniform(0, 3.5), phi = g.uniform(0, 6.283185307179586);
+  return glm::normalize(glm::dvec3(widthOf(m, m.x) * reach * std::cos(phi), widthOf(m, m.y) * reach * std::sin(phi), 1));
+}
+
+void addModels(Registry& r) {
+  // What is below 1e-7 of the peak is compared as absolute.
+  const Scale peak = [](const float* in) {
+    const auto m = modelOf(in);
+    const double area = widthOf(m, m.x) * widthOf(m, m.y);
+    return std::isnan(area) ? 1.0 : std::max(1.0, 0.1 / area);
+  };
+  r.add(CHIARO_CASE(logOnePlus, 1, 1, scalars(1), "x >= 0"), [](Generator& g, auto& out) { out.push_back(static_cast<float>(g.logUniform(1e-30, 1e30))); });
+  r.add(CHIARO_CASE(ndfValue, 6, 1, scalars(1), "six models, widths 1e-4..1, exponents 1..1e6; wh unit, any side"), [](Generator& g, auto& out) {
+    pushModel(g, out);
+    push(out, g.spoil(glm::vec3(halfVectorOf(g, out))));
+  });
+  const Fill modelAndDirections = [](Generator& g, auto& out) {
+    pushModel(g, out);
+    const glm::dvec3 wh = halfVectorOf(g, out);
+    glm::dvec3 wo = g.direction();
+    if (g.chance(0.3)) wo = g.tilted(glm::dvec3(0, 0, 1), 1.5707963 - g.logUniform(1e-6, 1));
+    if (g.chance(0.95)) wo.z = std::abs(wo.z);
+    const glm::dvec3 wi = g.chance(0.1) ? g.direction() : glm::normalize(2 * glm::dot(wo, wh) * wh - wo);
+    push(out, glm::vec3(wo));
+    push(out, glm::vec3(wi));
+    if (g.chance(0.01)) out[out.size() - 1 - static_cast<std::size_t>(g.uniform(0, 5.999))] = kNan;
+  };
+  r.add(CHIARO_CASE(smoothTimesCosine, 9, 1, scalars(1), "six models; wo, wi unit, any side", peak), modelAndDirections);
+  Case whole = CHIARO_CASE(reflectanceTimesCosine, 10, 3, scalars(3), "six models; wo, wi unit, any side; F0 0 to 1; exponents up to 16 of a rounded half vector: 3e-5", peak);
+  whole.tolerance = 3e-5;
+  r.add(std::move(whole), [=](Generator& g, auto& out) {
+    modelAndDirections(g, out);
+    out.push_back(static_cast<float>(g.uniform(0, 1)));
+  });
+  // A chain of mirrors, exponents and quotients: where a string's end meets the horizon one rounding moves an amplitude by 1e-4 of the peak.
+  Case elongated = CHIARO_CASE(elongatedLobes, 9, 2, scalars(2), "six models, widths .02..1, exponents 1..1e3, view cosine above .2: 2e-4 of max(value, .05 peak)",
+                               [=](const float* in) { return 0.05 / kFloor * peak(in); });
+  elongated.tolerance = 2e-4;
+  r.add(std::move(elongated), [](Generator& g, auto& out) {
+    const int kind = static_cast<int>(g.uniform(0, lobe64::kModelCount - 1e-9));
+    out.push_back(static_cast<float>(kind));
+    for (int i = 0; i < 2; ++i) out.push_back(static_cast<float>(lobe64::modelHasExponent(kind) ? g.logUniform(1, 1e3) : g.logUniform(0.02, 1)));
+    glm::dvec3 wo = g.direction();
+    wo.z = std::abs(wo.z) + 0.25;
+    wo = glm::normalize(wo);
+    const glm::dvec3 wh = halfVectorOf(g, out);
+    push(out, glm::vec3(wo));
+    push(out, glm::vec3(glm::normalize(2 * glm::dot(wo, wh) * wh - wo)));
+  });
+  r.add(CHIARO_CASE(ndfLobes, 3, 6, scalars(6), "six models"), [](Generator& g, auto& out) { pushModel(g, out); });
+  r.add(CHIARO_CASE(stringLobes, 2, 20, scalars(20), "sharpness 1e-3..1e8, ratio 1..1e4"), [](Generator& g, auto& out) {
+    const double broad = g.logUniform(1e-3, 1e6);
+    out.push_back(static_cast<float>(broad * (g.chance(0.1) ? 1.0 : g.logUniform(1, 1e4))));
+    out.push_back(static_cast<float>(broad));
+  });
+}
+
 void addDisplay(Registry& r) {
   const Fill unit = [](Generator& g, auto& out) { out.push_back(g.spoil(static_cast<float>(g.chance(0.5) ? g.uniform(-0.1, 1.1) : g.logUniform(1e-9, 1)))); };
   r.add(CHIARO_CASE(srgbEncode, 1, 1, scalars(1), "[0, 1], clamped"), unit);
@@ -372,6 +471,12 @@ void addSpecular(Registry& r) {
           out.push_back(static_cast<float>(g.logUniform(0.01, 1)));
           out.push_back(static_cast<float>(g.logUniform(1e-3, 1)));
         });
+  r.add(CHIARO_CASE(reflectanceTableLobe, 7, 8, {{0, 3}, {3, 1}, {4, 1}, {5, 1}, {6, 2}}, "entries of the fitted tables, width .01..1, cosine .001..1"),
+        [](Generator& g, auto& out) {
+          for (const auto& [low, high] : {std::pair{-3.0, 3.0}, {-3.0, 4.0}, {0.0, 1.0}, {0.0, 1.0}, {-1.5, 1.5}}) out.push_back(static_cast<float>(g.uniform(low, high)));
+          out.push_back(static_cast<float>(g.logUniform(1e-3, 1)));
+          out.push_back(static_cast<float>(g.logUniform(0.01, 1)));
+        });
   r.add(CHIARO_CASE(shadingNormalTowards, 6, 3, {{0, 3}}, "unit n, wo at most 135 degrees apart"), [](Generator& g, auto& out) {
     const glm::dvec3 n = g.direction();
     push(out, glm::vec3(n));
@@ -400,8 +505,10 @@ const std::vector<Case>& allCases() {
     addSphericalGaussians(r);
     addHalfSpaceAndCosine(r);
     addWarp(r);
+    addAnisotropicWarp(r);
     addMaps(r);
     addGgx(r);
+    addModels(r);
     addDisplay(r);
     addSpecular(r);
     return std::move(r.cases);

@@ -1,0 +1,9 @@
+#pragma once
+#include "precompute/report/brdf/figure.h"
+
+namespace chiaro {
+
+/// Supplement, figure 1: relative L2 error over the sphere of the clamped cosine as spherical Gaussians, SH and ZH, by the number of terms.
+Figure cosineFigure();
+
+}  // namespace chiaro

@@ -1,0 +1,98 @@
+/// The fitted tables of round reflectance models, as a shader reads them, against the models by quadrature.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "runtime/brdf/reflectance_table.h"
+#include "shaders/cpp/lobe.h"
+
+namespace chiaro {
+namespace {
+
+using namespace lobe64;
+
+struct View {
+  double error = 0.0;   ///< squared, relative
+  double albedo = 0.0;  ///< the model's, F = 1
+  double fresnel = 0.0; ///< the part of it that (1 - wo.wh)^5 weights
+};
+
+/// Cosine nodes in both angles of the half vector's slopes: not the fit's own samples.
+View measure(int kind, double parameter, double theta, const std::vector<SliceLobe>& lobes) {
+  const ReflectanceModel model = reflectanceModel(kind, parameter, parameter);
+  const Vec3 wo(std::sin(theta), 0, std::cos(theta));
+  const double width = modelWidth(kind, parameter);
+  View view;
+  double error2 = 0, norm2 = 0;
+  for (int i = 0; i < 100; ++i) {
+    const double t = (i + 0.5) / 100, r = 0.7 * t / (1 - t) * 2, step = 0.7 * 2 / ((1 - t) * (1 - t)) / 100;
+    for (int j = 0; j < 40; ++j) {
+      const double phi = (j + 0.25) / 40 * kTwoPi, x = width * r * std::cos(phi), y = width * r * std::sin(phi), z = 1 / std::sqrt(1 + x * x + y * y);
+      const Vec3 wh(x * z, y * z, z);
+      const double c = dot(wo, wh);
+      if (c <= 0) continue;
+      const Vec3 wi = 2 * c * wh - wo;
+      if (wi.z <= 0) continue;
+      const double weight = 4 * c * width * width * r * step * kTwoPi / 40 * z * z * z, truth = modelTimesCosine(model, wo, wi);
+      double sum = 0;
+      for (const SliceLobe& lobe : lobes) sum += (lobe.weight + lobe.fresnelWeight) * sgEvaluate(sphericalGaussian(lobe.axis, lobe.sharpness, vmfAmplitude(lobe.sharpness)), wi);
+      error2 += weight * (sum - truth) * (sum - truth);
+      norm2 += weight * truth * truth;
+      view.albedo += weight * truth;
+      view.fresnel += weight * truth * fresnelSchlickWeight(c);
+    }
+  }
+  view.error = error2 / norm2;
+  return view;
+}
+
+TEST(ReflectanceTable, ViewSlicesAreClose) {
+  for (int kind : {kCookTorrance, kBeckmann, kBlinnPhong, kWard, kGgx}) {
+    const ReflectanceTable table = makeReflectanceTable(kind);
+    double worst = 0, worstAlbedo = 0, worstFresnel = 0;
+    for (double width : {.02, .0617, .13, .37, .8}) {
+      const double parameter = modelHasExponent(kind) ? 2 / (width * width) - 1 : width;
+      for (double degrees : {0.0, 51.0, 74.0}) {
+        const double theta = degrees / 180 * kPi;
+        const auto lobes = reflectanceLobes(table, width, std::cos(theta));
+        ASSERT_EQ(lobes.size(), static_cast<std::size_t>(kReflectanceLobes));
+        double weight = 0, fresnel = 0;
+        for (const SliceLobe& lobe : lobes) {
+          EXPECT_NEAR(glm::length(lobe.axis), 1.0, 1e-9);
+          EXPECT_GE(lobe.weight, 0.0);
+          EXPECT_GE(lobe.fresnelWeight, 0.0);
+          weight += lobe.weight;
+          fresnel += lobe.fresnelWeight;
+        }
+        const View view = measure(kind, parameter, theta, lobes);
+        EXPECT_LE(view.error, width <= .4 ? .015 : .02) << kind << ' ' << width << ' ' << degrees;
+        worst = std::max(worst, view.error);
+        worstAlbedo = std::max(worstAlbedo, std::abs(weight + fresnel - view.albedo));
+        worstFresnel = std::max(worstFresnel, std::abs(fresnel - view.fresnel));
+      }
+    }
+    std::printf("model %d: worst view %.4f, albedo off by at most %.3f, its Fresnel part by %.3f\n", kind, worst, worstAlbedo, worstFresnel);
+    EXPECT_LE(worstAlbedo, .01) << kind;
+    EXPECT_LE(worstFresnel, .01) << kind;
+  }
+}
+
+TEST(ReflectanceTable, ThreadsDoNotMatter) {
+  EXPECT_EQ(makeReflectanceTable(kWard, 5, 7, 1).entries, makeReflectanceTable(kWard, 5, 7, 2).entries);
+}
+
+// Below the table's narrowest width a slice only scales; at grazing views it stays finite.
+TEST(ReflectanceTable, ExtremesAreFinite) {
+  const ReflectanceTable table = makeReflectanceTable(kGgx, 5, 9);
+  for (double width : {1e-4, .01, 1.0})
+    for (double cosine : {1e-6, .5, 1.0})
+      for (const SliceLobe& lobe : reflectanceLobes(table, width, cosine)) {
+        EXPECT_TRUE(std::isfinite(lobe.sharpness) && lobe.sharpness > 0);
+        EXPECT_NEAR(glm::length(lobe.axis), 1.0, 1e-9);
+        EXPECT_TRUE(lobe.weight >= 0 && lobe.fresnelWeight >= 0 && lobe.weight + lobe.fresnelWeight < 3) << lobe.weight << ' ' << lobe.fresnelWeight;
+      }
+}
+
+}  // namespace
+}  // namespace chiaro
