@@ -37,18 +37,19 @@ using RowMatrix = RowMajor<float>;
 const std::vector<VisibilityLevel> kLevels{{3.0f, 12}, {10.5f, 20}, {36.75f, 28}, {128.625f, 44}};
 /// With levels, only lobes of half the last one's sharpness and more read the SSDF: two to three of their standard deviations.
 constexpr float kJointClamp = 0.265f;
-/// Of the stored distances (measured on the built-in scene: from .12 to .18 alike; without, the functions lose a sixth more).
-constexpr float kJointSoftness = 0.15f;
+/// Of the stored distances: 2.7 texels of 64 x 64 (measured on the built-in scene: from .12 to .18 alike; without, the functions lose a sixth more). Between
+/// coarser texels the bend would show.
+float jointSoftness(int resolution) { return std::max(0.15f, 9.6f / static_cast<float>(resolution)); }
 /// What a stored distance, and the share of a lobe, weigh in the joint error. The sharpest level holds the most detail and, unweighted, would be the worst
 /// kept.
 constexpr float kSsdfWeight = 1.4f;
-float levelWeight(const VisibilityLevel& level) { return level == kLevels.back() ? 0.37f : 0.08f; }
+float levelWeight(const VisibilityLevel& level) { return level == kLevels.back() ? 0.37f : 0.09f; }
 constexpr float kFractionWeight = 0.2f;
 
 constexpr std::size_t kMostSampled = 8192;     // rows the shared functions are made from,
 constexpr std::size_t kLeastSampled = 2048;
-constexpr std::size_t kSampledOfFunction = 16; // so many for each of them: with a twentieth of the error of all rows
-constexpr int kMaskSide = 8;
+constexpr std::size_t kSampledOfFunction = 20; // so many for each of them: with a twentieth of the error of all rows
+constexpr int kMaskSide = 10;
 constexpr std::size_t kMostMasks = kMaskSide * kMaskSide + 1;
 constexpr std::size_t kMostTraining = 65536;   // rows the clusters are made from
 
@@ -122,7 +123,7 @@ ModelSize sizeOf(const BakeSettings& settings, double bytes, std::size_t vertice
 
 RateTarget rateOf(const BakeSettings& settings, double bytes) {
   // Where nothing was asked for, no byte goes into what drowns in other errors, and small scenes, in which few vertices share much, take more of them.
-  if (settings.bytesPerVertex == 0.0 && settings.targetError == 0.0) return {.bytesPerVertex = bytes, .finest = 0.004, .mostRounding = 2e-3};
+  if (settings.bytesPerVertex == 0.0 && settings.targetError == 0.0) return {.bytesPerVertex = bytes, .finest = 0.004, .mostRounding = 1e-3};
   return {.bytesPerVertex = settings.bytesPerVertex < 0.0 ? std::numeric_limits<double>::infinity() : bytes};
 }
 
@@ -178,7 +179,7 @@ void bakeClustered(const BakeTask& task, BakedScene& baked, BakeReport& report) 
   const TransferRows::Layout layout{.resolution = settings.resolution,
                               .samplingResolution = settings.samplingResolution,
                               .clamp = joint ? kJointClamp : kMaxDistance,
-                              .softness = joint ? kJointSoftness : 0.0f,
+                              .softness = joint ? jointSoftness(settings.resolution) : 0.0f,
                               .leastOccluder = settings.leastOccluder,
                               .levels = joint ? kLevels : std::vector<VisibilityLevel>{},
                               .directions = transfer.directions,
@@ -191,7 +192,7 @@ void bakeClustered(const BakeTask& task, BakedScene& baked, BakeReport& report) 
   // With levels the fractions are part of a row, else bytes beside it.
   const auto directions = layout.directions.size(), sideBytes = joint ? 0 : directions;
   const auto mostSize = sizeOf(settings, mostBytes(settings), count);
-  const PcaSettings pcaSettings{.terms = mostSize.functions, .iterations = 3, .seed = settings.seed, .threads = settings.threads};
+  const PcaSettings pcaSettings{.terms = mostSize.functions, .iterations = 2, .seed = settings.seed, .threads = settings.threads};
   const auto sampleSize = std::min(count, std::clamp(kSampledOfFunction * static_cast<std::size_t>(mostSize.functions), kLeastSampled, kMostSampled));
   const Needs needs{.vertices = count,
                     .rowColumns = rows.size(),

@@ -153,7 +153,8 @@ TEST(ClusteredBake, JointSaysHowGoodItIs) {
   for (const int sharpness : kSharpness) {
     // Texels of 64 x 64 are .055 rad wide and edges uncertain to half of that at worst; an average axis is far from any edge.
     EXPECT_LE(b.fraction(sharpness, true), 0.01) << sharpness;
-    EXPECT_LE(b.fraction(sharpness), 0.02) << sharpness;
+    // Broad lobes are held least closely: they weigh a tenth of a distance.
+    EXPECT_LE(b.fraction(sharpness), 0.025) << sharpness;
   }
   EXPECT_LE(std::abs(b.report.bytesPerVertex - b.scene.transfer.bytesPerVertex(b.report.vertices)), 1e-9);
   for (const auto& [name, value] : b.error) EXPECT_EQ(b.scene.facts.at("error." + name), value);
