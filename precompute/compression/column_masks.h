@@ -12,7 +12,6 @@ struct ColumnMasks {
   std::vector<std::vector<float>> masks;  ///< #columns each, in [0, 1]; one with nothing but 1 may be empty
   std::vector<std::uint16_t> ofRow;       ///< index into `masks`
 
-  bool empty() const { return masks.empty(); }  ///< all values of all rows matter
   const std::vector<float>& of(std::size_t row) const { return masks[ofRow[row]]; }
 };
 

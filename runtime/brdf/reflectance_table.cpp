@@ -2,12 +2,10 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <functional>
 #include <limits>
-#include <thread>
 
+#include "runtime/parallel.h"
 #include "shaders/cpp/lobe.h"
 
 namespace chiaro {
@@ -19,17 +17,6 @@ using Eigen::VectorXd;
 using lobe64::Vec3;
 
 constexpr double kLeastCosine = 0.03;  // grazing views below 88 degrees are taken as that
-
-void parallelFor(int count, int threads, const std::function<void(int)>& body) {
-  std::atomic<int> next{0};
-  const auto work = [&] {
-    for (int i = next++; i < count; i = next++) body(i);
-  };
-  const unsigned workers = threads > 0 ? static_cast<unsigned>(threads) : std::max(1u, std::thread::hardware_concurrency());
-  std::vector<std::jthread> pool;
-  for (unsigned t = 1; t < workers; ++t) pool.emplace_back(work);
-  work();
-}
 
 /// rho (n.wi) of one view at light directions with y >= 0 (the other half mirrors them), with quadrature weights.
 struct Slice {

@@ -2,11 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
-#include <functional>
-#include <thread>
 
+#include "runtime/parallel.h"
 #include "shaders/cpp/lobe.h"
 
 namespace chiaro {
@@ -16,17 +14,6 @@ using lobe64::Vec3;
 constexpr int kLobes = SpecularTable::kLobeCount;
 constexpr int kStrung = 5;  // lobes strung per mixture term
 constexpr int kTerms = kLobes / kStrung;
-
-void parallelFor(int count, int threads, const std::function<void(int)>& body) {
-  std::atomic<int> next{0};
-  const auto work = [&] {
-    for (int i = next++; i < count; i = next++) body(i);
-  };
-  const unsigned workers = threads > 0 ? static_cast<unsigned>(threads) : std::max(1u, std::thread::hardware_concurrency());
-  std::vector<std::jthread> pool;
-  for (unsigned t = 1; t < workers; ++t) pool.emplace_back(work);
-  work();
-}
 
 /// A light direction with what the slice of the BRDF is there. The viewer is in the xz plane, n = z.
 struct SliceSample {

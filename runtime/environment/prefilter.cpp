@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "runtime/environment/cube_map.h"
-#include "runtime/environment/parallel.h"
+#include "runtime/parallel.h"
 #include "shaders/cpp/lobe.h"
 
 namespace chiaro {

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <unsupported/Eigen/FFT>
 
-#include "runtime/environment/parallel.h"
+#include "runtime/parallel.h"
 
 namespace chiaro {
 namespace {
