@@ -1,7 +1,9 @@
 #include "assets/scene/gltf_material.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
 #include <span>
 
 #include "assets/error.h"
@@ -110,6 +112,9 @@ class MaterialReader {
       material.alphaCutoff = static_cast<float>(source.alphaCutoff);
       material.doubleSided = source.doubleSided;
       readAnisotropy(source, material);
+      readSpecular(source, material);
+      readClearcoat(source, material);
+      readReflectance(source, material);
       scene_.materials.push_back(std::move(material));
     }
   }
@@ -203,14 +208,98 @@ class MaterialReader {
     const auto& value = found->second;
     material.anisotropyStrength = within(gltfNumber(value, "anisotropyStrength", 0.0), 0, 1, "anisotropyStrength");
     material.anisotropyRotation = static_cast<float>(gltfNumber(value, "anisotropyRotation", 0.0));
-    if (!value.Has("anisotropyTexture")) return;
-    const auto& reference = value.Get("anisotropyTexture");
+    material.anisotropyTexture = textureOf(value, "anisotropyTexture", material.anisotropyTransform);
+  }
+
+  void readSpecular(const tinygltf::Material& source, Material& material) {
+    if (const auto* value = extension(source, "KHR_materials_ior")) {
+      const double ior = gltfNumber(*value, "ior", 1.5);
+      material.ior = ior == 0.0 ? 0.0f : within(ior, 1.0, 1e6, "ior");
+    }
+    const auto* value = extension(source, "KHR_materials_specular");
+    if (value == nullptr) return;
+    material.specularFactor = within(gltfNumber(*value, "specularFactor", 1.0), 0, 1, "specularFactor");
+    material.specularTexture = textureOf(*value, "specularTexture", material.specularTransform);
+    if (const auto color = numbers<3>(*value, "specularColorFactor"))
+      for (int c = 0; c < 3; ++c) material.specularColorFactor[c] = within((*color)[static_cast<std::size_t>(c)], 0, 1e6, "specularColorFactor");
+    material.specularColorTexture = textureOf(*value, "specularColorTexture", material.specularColorTransform);
+  }
+
+  void readClearcoat(const tinygltf::Material& source, Material& material) {
+    const auto* value = extension(source, "KHR_materials_clearcoat");
+    if (value == nullptr) return;
+    material.clearcoatFactor = within(gltfNumber(*value, "clearcoatFactor", 0.0), 0, 1, "clearcoatFactor");
+    if (material.clearcoatFactor == 0.0f) return;
+    material.clearcoatTexture = textureOf(*value, "clearcoatTexture", material.clearcoatTransform);
+    material.clearcoatRoughness = within(gltfNumber(*value, "clearcoatRoughnessFactor", 0.0), 0, 1, "clearcoatRoughnessFactor");
+    material.clearcoatRoughnessTexture = textureOf(*value, "clearcoatRoughnessTexture", material.clearcoatRoughnessTransform);
+    if (value->Has("clearcoatNormalTexture"))
+      warnings_.say(label_ + " has a clearcoatNormalTexture, which is left out: its coat follows the mesh");
+  }
+
+  void readReflectance(const tinygltf::Material& source, Material& material) {
+    const auto* value = extension(source, "CHIARO_materials_reflectance");
+    if (value == nullptr) return;
+    const std::string where = label_ + " has in CHIARO_materials_reflectance ";
+    const std::string name = value->Has("model") && value->Get("model").IsString() ? value->Get("model").Get<std::string>() : "";
+    const auto model = reflectanceFromName(name);
+    if (!model) throw inputError(path_.string(), where + (name.empty() ? "no model" : "the unknown model \"" + name + "\""), "name one of " + allNames());
+    material.reflectance = *model;
+    if (const auto width = numbers<2>(*value, "width")) {
+      if (!((*width)[0] > 0.0 && (*width)[1] > 0.0))
+        throw inputError(path_.string(), where + "a width that is not above 0", "give two widths or exponents, along tangent and bitangent");
+      const bool exponent = hasExponent(*model);
+      const auto inRange = [&](double w) {
+        return within(w, static_cast<double>(exponent ? kLeastExponent : kLeastWidth), static_cast<double>(exponent ? kMostExponent : kMostWidth), "width");
+      };
+      material.reflectanceWidth = glm::vec2(inRange((*width)[0]), inRange((*width)[1]));
+      if (isRound(*model)) material.reflectanceWidth->y = material.reflectanceWidth->x;
+    }
+    if (const auto color = numbers<3>(*value, "specularColor")) {
+      material.reflectanceF0.emplace(0.0f);
+      for (int c = 0; c < 3; ++c) (*material.reflectanceF0)[c] = within((*color)[static_cast<std::size_t>(c)], 0, 1, "specularColor");
+    }
+  }
+
+  static std::string allNames() {
+    std::string all;
+    for (const auto& name : reflectanceNames()) all += (all.empty() ? "" : ", ") + name;
+    return all;
+  }
+
+  /// An extension of the material, where it is an object.
+  static const tinygltf::Value* extension(const tinygltf::Material& source, const char* name) {
+    const auto found = source.extensions.find(name);
+    return found != source.extensions.end() && found->second.IsObject() ? &found->second : nullptr;
+  }
+
+  /// A list of `Size` finite numbers; nothing where it is absent.
+  template <std::size_t Size>
+  std::optional<std::array<double, Size>> numbers(const tinygltf::Value& object, const char* key) const {
+    if (!object.Has(key)) return std::nullopt;
+    const auto& list = object.Get(key);
+    std::array<double, Size> out{};
+    bool good = list.IsArray() && list.ArrayLen() == Size;
+    for (std::size_t i = 0; good && i < Size; ++i) {
+      const auto& entry = list.Get(static_cast<int>(i));
+      good = entry.IsNumber();
+      if (good) out[i] = entry.GetNumberAsDouble();
+      good = good && std::abs(out[i]) <= 1e30;  // what a float holds; NaN fails
+    }
+    if (!good) throw inputError(path_.string(), label_ + " has a " + key + " that is not a list of " + std::to_string(Size) + " numbers", "export the file again");
+    return out;
+  }
+
+  /// A texture that a member of an extension names.
+  int textureOf(const tinygltf::Value& object, const char* key, TextureTransform& transform) {
+    if (!object.Has(key)) return kNone;
+    const auto& reference = object.Get(key);
     tinygltf::TextureInfo info;
     info.index = static_cast<int>(gltfNumber(reference, "index", -2.0));
     info.texCoord = static_cast<int>(gltfNumber(reference, "texCoord", 0.0));
     if (reference.Has("extensions") && reference.Get("extensions").Has("KHR_texture_transform"))
       info.extensions["KHR_texture_transform"] = reference.Get("extensions").Get("KHR_texture_transform");
-    material.anisotropyTexture = texture(info, material.anisotropyTransform);
+    return texture(info, transform);
   }
 
   const tinygltf::Model& model_;

@@ -21,7 +21,9 @@ constexpr std::size_t kLargestFile = 0xFFFFFFFFu;  // TinyGLTF takes 32 bit leng
 constexpr int kDeepestNode = 512;
 
 const std::set<std::string> kSupported{"KHR_lights_punctual",   "KHR_materials_emissive_strength", "KHR_materials_anisotropy",
-                                       "KHR_mesh_quantization", "KHR_texture_transform",           "CHIARO_radiance_transfer"};
+                                       "KHR_mesh_quantization", "KHR_texture_transform",           "CHIARO_radiance_transfer",
+                                       "KHR_materials_ior",     "KHR_materials_specular",          "KHR_materials_clearcoat",
+                                       "CHIARO_materials_reflectance"};
 
 std::string named(const std::string& kind, int index, const std::string& name) {
   return kind + " " + std::to_string(index) + (name.empty() ? "" : " (" + name + ")");

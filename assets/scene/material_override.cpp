@@ -52,6 +52,9 @@ void overrideMaterials(Scene& scene, const MaterialOverride& values) {
   for (auto& material : scene.materials) {
     if (values.roughness) material.roughnessFactor = *values.roughness;
     if (values.metallic) material.metallicFactor = *values.metallic;
+    if (values.model) material.reflectance = *values.model;
+    if (values.roughness || values.model) material.reflectanceWidth.reset();
+    if (!values.roughness && !values.metallic) continue;
     int& texture = material.metallicRoughnessTexture;
     if (texture == kNone) continue;
     if (values.roughness && values.metallic) {

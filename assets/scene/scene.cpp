@@ -27,6 +27,24 @@ const Material& materialOf(const Scene& scene, const Primitive& primitive) {
   return primitive.material == kNone ? kDefault : scene.materials[static_cast<std::size_t>(primitive.material)];
 }
 
+glm::vec2 reflectanceAlpha(const Material& material) {
+  glm::vec2 alpha(material.roughnessFactor * material.roughnessFactor);
+  if (material.reflectanceWidth) {
+    alpha = *material.reflectanceWidth;
+    if (hasExponent(material.reflectance)) alpha = {alphaFromExponent(alpha.x), alphaFromExponent(alpha.y)};
+  } else {
+    alpha.x = glm::mix(alpha.x, 1.0f, material.anisotropyStrength * material.anisotropyStrength);
+  }
+  if (isRound(material.reflectance)) alpha = glm::vec2(material.reflectanceWidth ? alpha.x : alpha.y);
+  return alpha;
+}
+
+float dielectricF0(float ior) {
+  if (ior == 0.0f) return 1.0f;
+  const float root = (ior - 1.0f) / (ior + 1.0f);
+  return root * root;
+}
+
 glm::mat2 TextureTransform::linear() const {
   const float c = std::cos(rotation), s = std::sin(rotation);
   return {glm::vec2(c, -s) * scale.x, glm::vec2(s, c) * scale.y};

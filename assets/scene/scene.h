@@ -9,8 +9,11 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
+
+#include "assets/scene/reflectance.h"
 
 namespace chiaro {
 
@@ -45,8 +48,8 @@ struct TextureTransform {
 
 enum class AlphaMode { opaque, mask, blend };
 
-/// glTF 2.0 metallic-roughness material with KHR_materials_anisotropy; a texture is an index into Scene::textures and
-/// reads TEXCOORD_0 through the transform beside it. Colour textures are sRGB-encoded, the others linear.
+/// glTF 2.0 metallic-roughness material with KHR_materials_anisotropy, _specular, _ior, _clearcoat and CHIARO_materials_reflectance; a texture
+/// is an index into Scene::textures and reads TEXCOORD_0 through the transform beside it. Colour textures are sRGB-encoded, the others linear.
 struct Material {
   std::string name;
   glm::vec4 baseColorFactor{1.0f};
@@ -72,7 +75,31 @@ struct Material {
   float anisotropyRotation = 0.0f;       ///< radians, counter-clockwise from the tangent
   int anisotropyTexture = kNone;         ///< RG direction in [-1,1], B strength
   TextureTransform anisotropyTransform;
+
+  float ior = 1.5f;                      ///< at least 1; 0 stands for infinity
+  float specularFactor = 1.0f;           ///< 0..1, of a dielectric's F0 and F90
+  int specularTexture = kNone;           ///< A
+  TextureTransform specularTransform;
+  glm::vec3 specularColorFactor{1.0f};   ///< of a dielectric's F0; may exceed 1
+  int specularColorTexture = kNone;      ///< RGB
+  TextureTransform specularColorTransform;
+  float clearcoatFactor = 0.0f;          ///< 0..1: a second GGX layer of F0 .04 on the mesh's own normal
+  int clearcoatTexture = kNone;          ///< R
+  TextureTransform clearcoatTransform;
+  float clearcoatRoughness = 0.0f;       ///< perceptual
+  int clearcoatRoughnessTexture = kNone; ///< G
+  TextureTransform clearcoatRoughnessTransform;
+
+  Reflectance reflectance = Reflectance::ggx;
+  std::optional<glm::vec2> reflectanceWidth;  ///< along tangent and bitangent, widths or exponents; absent: see reflectanceAlpha()
+  std::optional<glm::vec3> reflectanceF0;     ///< 0..1, instead of the metallic-roughness F0
 };
+
+/// The widths along tangent and bitangent, before any texture, as alpha whatever the model calls them (alphaFromExponent): of
+/// `reflectanceWidth`, else roughness^2 with the anisotropy's stretch. A roughness texture multiplies both by G^2.
+glm::vec2 reflectanceAlpha(const Material& material);
+/// F0 of a dielectric of this index of refraction, KHR_materials_ior.
+float dielectricF0(float ior);
 
 /// One draw: an indexed triangle list with one material. Attribute arrays are empty or as long as `positions`.
 struct Primitive {

@@ -99,6 +99,9 @@ class SceneWriter {
       if (material.alphaMode == AlphaMode::blend) out["alphaMode"] = "BLEND";
       if (material.doubleSided) out["doubleSided"] = true;
       writeAnisotropy(material, out);
+      writeSpecular(material, out);
+      writeClearcoat(material, out);
+      writeReflectance(material, out);
       push(json_, "materials", std::move(out));
     }
   }
@@ -206,6 +209,41 @@ class SceneWriter {
     extension["anisotropyStrength"] = material.anisotropyStrength;
     extension["anisotropyRotation"] = material.anisotropyRotation;
     addTexture(extension, "anisotropyTexture", material.anisotropyTexture, material.anisotropyTransform);
+  }
+
+  void writeSpecular(const Material& material, Json& out) {
+    if (material.ior != 1.5f) {
+      use("KHR_materials_ior");
+      out["extensions"]["KHR_materials_ior"]["ior"] = material.ior;
+    }
+    if (material.specularFactor == 1.0f && material.specularTexture == kNone && material.specularColorFactor == glm::vec3(1.0f) &&
+        material.specularColorTexture == kNone)
+      return;
+    use("KHR_materials_specular");
+    auto& extension = out["extensions"]["KHR_materials_specular"];
+    extension["specularFactor"] = material.specularFactor;
+    addTexture(extension, "specularTexture", material.specularTexture, material.specularTransform);
+    extension["specularColorFactor"] = list(material.specularColorFactor);
+    addTexture(extension, "specularColorTexture", material.specularColorTexture, material.specularColorTransform);
+  }
+
+  void writeClearcoat(const Material& material, Json& out) {
+    if (material.clearcoatFactor == 0.0f) return;  // and with it everything else of a coat
+    use("KHR_materials_clearcoat");
+    auto& extension = out["extensions"]["KHR_materials_clearcoat"];
+    extension["clearcoatFactor"] = material.clearcoatFactor;
+    addTexture(extension, "clearcoatTexture", material.clearcoatTexture, material.clearcoatTransform);
+    extension["clearcoatRoughnessFactor"] = material.clearcoatRoughness;
+    addTexture(extension, "clearcoatRoughnessTexture", material.clearcoatRoughnessTexture, material.clearcoatRoughnessTransform);
+  }
+
+  void writeReflectance(const Material& material, Json& out) {
+    if (material.reflectance == Reflectance::ggx && !material.reflectanceWidth && !material.reflectanceF0) return;
+    use("CHIARO_materials_reflectance");
+    auto& extension = out["extensions"]["CHIARO_materials_reflectance"];
+    extension["model"] = reflectanceNames()[static_cast<std::size_t>(material.reflectance)];
+    if (material.reflectanceWidth) extension["width"] = list(*material.reflectanceWidth);
+    if (material.reflectanceF0) extension["specularColor"] = list(*material.reflectanceF0);
   }
 
   Json primitiveJson(const Primitive& primitive, const std::string& label) {

@@ -36,7 +36,8 @@ class FitCheck {
       require(inRange(texture.image, scene_.images.size()), "a texture names an image that does not exist");
     for (const auto& m : scene_.materials)
       for (const int texture : {m.baseColorTexture, m.metallicRoughnessTexture, m.normalTexture, m.occlusionTexture,
-                                m.emissiveTexture, m.anisotropyTexture})
+                                m.emissiveTexture, m.anisotropyTexture, m.specularTexture, m.specularColorTexture, m.clearcoatTexture,
+                                m.clearcoatRoughnessTexture})
         require(inRange(texture, scene_.textures.size()), "material " + m.name + " names a texture that does not exist");
     for (const auto& image : scene_.images) require(!image.bytes.empty(), "image " + image.name + " is empty");
   }

@@ -98,7 +98,8 @@ void computeTangents(Primitive& primitive, const glm::dmat2& linear, RepairRepor
 
 bool needsTangents(const Material& material, const Primitive& primitive) {
   const bool hasTexcoords = !primitive.texcoords.empty();
-  return (material.normalTexture != kNone && hasTexcoords) || material.anisotropyStrength > 0.0f;
+  return (material.normalTexture != kNone && hasTexcoords) || material.anisotropyStrength > 0.0f ||
+         reflectanceAlpha(material).x != reflectanceAlpha(material).y;
 }
 
 void makeTangents(Primitive& primitive, const Material& material, RepairReport& report) {

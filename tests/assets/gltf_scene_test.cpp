@@ -314,7 +314,7 @@ TEST(GltfScene, MaterialsAndTextures) {
   file.root["samplers"] = {{{"wrapS", 33071}, {"wrapT", 33648}, {"magFilter", 9728}}};
   file.root["textures"] = {
       {{"source", 0}, {"sampler", 0}}, {{"source", 1}}, {{"extensions", {{"EXT_texture_webp", {{"source", 0}}}}}}};
-  file.root["extensionsUsed"] = {"KHR_materials_emissive_strength", "KHR_materials_anisotropy", "KHR_materials_clearcoat"};
+  file.root["extensionsUsed"] = {"KHR_materials_emissive_strength", "KHR_materials_anisotropy", "KHR_materials_sheen"};
   file.root["materials"] = {
       {{"name", "a"},
        {"pbrMetallicRoughness",
@@ -359,7 +359,7 @@ TEST(GltfScene, MaterialsAndTextures) {
   EXPECT_EQ(scene.textures[0].wrapT, Wrap::mirroredRepeat);
   EXPECT_TRUE(scene.textures[0].nearest);
   EXPECT_EQ(scene.textures[1].wrapS, Wrap::repeat);
-  EXPECT_THAT(file.warnings, testing::IsSupersetOf({HasSubstr("KHR_materials_clearcoat is ignored"), HasSubstr("TEXCOORD_1"),
+  EXPECT_THAT(file.warnings, testing::IsSupersetOf({HasSubstr("KHR_materials_sheen is ignored"), HasSubstr("TEXCOORD_1"),
                                                     HasSubstr("roughnessFactor"), HasSubstr("texture 2")}));
 
   std::filesystem::remove(file.folder / "col our.png");
@@ -367,6 +367,74 @@ TEST(GltfScene, MaterialsAndTextures) {
                                            HasSubstr("put the image where")));
   test::put(file.folder / "col our.png", std::string("not an image"));
   EXPECT_THAT(file.error(), HasSubstr("image 0 (colour) is neither PNG nor JPEG"));
+}
+
+// KHR_materials_ior, _specular, _clearcoat and our own extension: their members, defaults, and what is out of range.
+TEST(GltfScene, ReflectanceExtensions) {
+  File file;
+  file.triangle();
+  test::put(file.folder / "a.png", test::tinyPng());
+  file.root["images"] = {{{"uri", "a.png"}}};
+  file.root["textures"] = {{{"source", 0}}};
+  const json reference{{"index", 0}, {"extensions", {{"KHR_texture_transform", {{"rotation", 0.5}}}}}};
+  file.root["materials"] = {
+      {{"extensions",
+        {{"KHR_materials_ior", {{"ior", 2}}},
+         {"KHR_materials_specular",
+          {{"specularFactor", 0.5}, {"specularTexture", reference}, {"specularColorFactor", {2, 1, 0}}, {"specularColorTexture", {{"index", 0}}}}},
+         {"KHR_materials_clearcoat",
+          {{"clearcoatFactor", 0.25},
+           {"clearcoatTexture", reference},
+           {"clearcoatRoughnessFactor", 0.125},
+           {"clearcoatRoughnessTexture", {{"index", 0}}},
+           {"clearcoatNormalTexture", {{"index", 0}}}}},
+         {"CHIARO_materials_reflectance", {{"model", "ward"}, {"width", {0.25, 0.5}}, {"specularColor", {1, 0.5, 0}}}}}}},
+      {{"pbrMetallicRoughness", {{"roughnessFactor", 0.5}}},
+       {"extensions",
+        {{"KHR_materials_ior", {{"ior", 0}}},
+         {"KHR_materials_specular", json::object()},
+         {"KHR_materials_clearcoat", json::object()},
+         {"KHR_materials_anisotropy", {{"anisotropyStrength", 0.5}}},
+         {"CHIARO_materials_reflectance", {{"model", "ashikhminShirley"}}}}}},
+      {{"extensions", {{"CHIARO_materials_reflectance", {{"model", "blinnPhong"}, {"width", {2e6, 3}}}}}}}};
+  const Scene scene = file.load();
+  const auto& m = scene.materials[0];
+  EXPECT_EQ(m.ior, 2.0f);
+  EXPECT_NEAR(dielectricF0(m.ior), 1.0f / 9.0f, 1e-6f);
+  EXPECT_EQ(m.specularFactor, 0.5f);
+  EXPECT_EQ(m.specularTexture, 0);
+  EXPECT_EQ(m.specularTransform.rotation, 0.5f);
+  EXPECT_EQ(m.specularColorFactor, glm::vec3(2, 1, 0));
+  EXPECT_EQ(m.specularColorTexture, 0);
+  EXPECT_EQ(m.clearcoatFactor, 0.25f);
+  EXPECT_EQ(m.clearcoatTexture, 0);
+  EXPECT_EQ(m.clearcoatTransform.rotation, 0.5f);
+  EXPECT_EQ(m.clearcoatRoughness, 0.125f);
+  EXPECT_EQ(m.clearcoatRoughnessTexture, 0);
+  EXPECT_EQ(m.reflectance, Reflectance::ward);
+  EXPECT_EQ(m.reflectanceWidth, glm::vec2(0.25f, 0.5f));
+  EXPECT_EQ(m.reflectanceF0, glm::vec3(1, 0.5f, 0));
+  EXPECT_EQ(reflectanceAlpha(m), glm::vec2(0.25f, 0.5f));
+  const auto& plain = scene.materials[1];
+  EXPECT_EQ(dielectricF0(plain.ior), 1.0f) << "0 is infinity";
+  EXPECT_EQ(plain.specularFactor, 1.0f);
+  EXPECT_EQ(plain.clearcoatFactor, 0.0f);
+  EXPECT_FALSE(plain.reflectanceWidth || plain.reflectanceF0);
+  EXPECT_EQ(reflectanceAlpha(plain), glm::vec2(0.4375f, 0.25f)) << "from roughness and anisotropy";
+  EXPECT_EQ(scene.materials[2].reflectanceWidth, glm::vec2(1e6f)) << "clamped, and round";
+  EXPECT_NEAR(exponentFromAlpha(reflectanceAlpha(scene.materials[2]).y), 1e6f, 1.0f);
+  EXPECT_THAT(file.warnings, testing::IsSupersetOf({HasSubstr("clearcoatNormalTexture"), HasSubstr("has width 2000000")}));
+
+  const auto errorOf = [&](const json& extension) {
+    file.root["materials"] = {{{"extensions", {{"CHIARO_materials_reflectance", extension}}}}};
+    return file.error();
+  };
+  EXPECT_THAT(errorOf({{"model", "velvet"}}), testing::AllOf(HasSubstr("unknown model \"velvet\""), HasSubstr("name one of ggx, cookTorrance")));
+  EXPECT_THAT(errorOf({{"width", {1, 1}}}), HasSubstr("no model"));
+  EXPECT_THAT(errorOf({{"model", "ggx"}, {"width", 0.5}}), HasSubstr("width that is not a list of 2 numbers"));
+  EXPECT_THAT(errorOf({{"model", "ggx"}, {"width", {0.5, "x"}}}), HasSubstr("width that is not a list of 2 numbers"));
+  EXPECT_THAT(errorOf({{"model", "ggx"}, {"width", {0, 0.5}}}), HasSubstr("a width that is not above 0"));
+  EXPECT_THAT(errorOf({{"model", "ggx"}, {"specularColor", {1, 1}}}), HasSubstr("specularColor that is not a list of 3 numbers"));
 }
 
 // KHR_texture_transform, its defaults and its own texture coordinate set.

@@ -63,6 +63,22 @@ void expectSame(const Material& a, const Material& b) {
   EXPECT_EQ(a.occlusionTransform, b.occlusionTransform);
   EXPECT_EQ(a.emissiveTransform, b.emissiveTransform);
   EXPECT_EQ(a.anisotropyTransform, b.anisotropyTransform);
+  EXPECT_EQ(a.ior, b.ior);
+  EXPECT_EQ(a.specularFactor, b.specularFactor);
+  EXPECT_EQ(a.specularTexture, b.specularTexture);
+  EXPECT_EQ(a.specularTransform, b.specularTransform);
+  EXPECT_EQ(a.specularColorFactor, b.specularColorFactor);
+  EXPECT_EQ(a.specularColorTexture, b.specularColorTexture);
+  EXPECT_EQ(a.specularColorTransform, b.specularColorTransform);
+  EXPECT_EQ(a.clearcoatFactor, b.clearcoatFactor);
+  EXPECT_EQ(a.clearcoatTexture, b.clearcoatTexture);
+  EXPECT_EQ(a.clearcoatTransform, b.clearcoatTransform);
+  EXPECT_EQ(a.clearcoatRoughness, b.clearcoatRoughness);
+  EXPECT_EQ(a.clearcoatRoughnessTexture, b.clearcoatRoughnessTexture);
+  EXPECT_EQ(a.clearcoatRoughnessTransform, b.clearcoatRoughnessTransform);
+  EXPECT_EQ(a.reflectance, b.reflectance);
+  EXPECT_EQ(a.reflectanceWidth, b.reflectanceWidth);
+  EXPECT_EQ(a.reflectanceF0, b.reflectanceF0);
 }
 
 void expectSame(const Camera& a, const Camera& b) {
