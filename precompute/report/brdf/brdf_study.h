@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "precompute/report/brdf/figure.h"
+#include "precompute/figure/figure.h"
 
 namespace chiaro {
 

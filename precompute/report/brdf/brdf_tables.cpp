@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "precompute/report/report_page.h"
+#include "precompute/figure/html_text.h"
 
 namespace chiaro {
 namespace {

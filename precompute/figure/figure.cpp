@@ -1,11 +1,11 @@
-#include "precompute/report/brdf/figure.h"
+#include "precompute/figure/figure.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <limits>
 
-#include "precompute/report/report_page.h"
+#include "precompute/figure/html_text.h"
 
 namespace chiaro {
 namespace {
