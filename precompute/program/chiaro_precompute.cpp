@@ -21,6 +21,7 @@
 #include "precompute/elapsed.h"
 #include "precompute/memory_budget.h"
 #include "precompute/program/bake_json.h"
+#include "precompute/program/material_program.h"
 
 namespace {
 
@@ -36,6 +37,8 @@ constexpr const char* kExamples = R"(Examples:
       more triangles where walls and floors have too few for their shadows
   chiaro-precompute statue.ply -o statue.glb --memory-limit 1024
       a million vertices in a gigabyte; stopped or killed, the same command goes on where it was
+  chiaro-precompute material gold.binary -o gold.gltf
+      a measured reflectance as a material; has options of its own, see chiaro-precompute material --help
   chiaro-view baked.glb
       shows the result
 
@@ -288,5 +291,8 @@ ExitCode precompute(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return chiaro::runMain("chiaro-precompute", [&] { return precompute(argc, argv); });
+  return chiaro::runMain("chiaro-precompute", [&] {
+    if (argc > 1 && std::string_view(argv[1]) == "material") return chiaro::materialProgram(argc - 1, argv + 1);
+    return precompute(argc, argv);
+  });
 }
