@@ -37,7 +37,9 @@ class NamedTable {
     return value;
   }
   Vec3 colour(std::size_t row, const std::string& column) const {
-    return Vec3(number(row, column + "_r"), number(row, column + "_g"), number(row, column + "_b"));
+    Vec3 value(0.0);
+    for (int c = 0; c < 3; ++c) value[c] = number(row, column + "_" + "rgb"[c]);
+    return value;
   }
   std::size_t line(std::size_t row) const { return rows_[row + 1].line; }
 

@@ -270,6 +270,9 @@ MaterialFit fitMaterial(const std::vector<FitSample>& samples, const FitFamily& 
       consider(start, options);
     }
   }
+  // Where F leaves nothing, the diffuse colour says nothing.
+  const double largest = std::max(best.f0().x, std::max(best.f0().y, best.f0().z));
+  if (family.fresnel == Fresnel::schlick && largest >= 1.0 - 1e-3) best.diffuse = Vec3(0.0);
   best.cosineError = rootMeanSquare(samples, family, FitMetric::cosine, best);
   return best;
 }
