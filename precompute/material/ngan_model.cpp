@@ -48,7 +48,7 @@ double nganLobe(const NganLobe& l, const Vec3& wo, const Vec3& wi) {
   const double gaussian = std::exp(-tan2 / (l.width * l.width)) / (lobe64::kPi * l.width * l.width);
   if (l.family == NganFamily::ward) return 0.25 * gaussian / std::sqrt(wo.z * wi.z);
   if (l.family == NganFamily::wardDuer) return 0.25 * gaussian / (wo.z * wi.z);
-  return grooveMasking(wo, wi, wh) * gaussian / (cos2 * cos2 * wo.z * wi.z);
+  return 0.25 * grooveMasking(wo, wi, wh) * gaussian / (cos2 * cos2 * wo.z * wi.z);
 }
 
 Reflectance nganReflectance(const NganModel& model) {

@@ -5,8 +5,9 @@
 ///   WardDuer        the same over (n.wi) (n.wo)                               (Duer 2004)
 ///   BlinnPhong      (Exponent + 2) / (2 pi) c^Exponent
 ///   LafortuneIso    (Cxy (x x' + y y') + Cz z z')^Exponent, where positive     (Lafortune 1997)
-///   CookTorrance    F G e^(-tan^2 / m^2) / (pi m^2 c^4 (n.wi) (n.wo))
+///   CookTorrance    F G e^(-tan^2 / m^2) / (4 pi m^2 c^4 (n.wi) (n.wo))
 ///   AshikhminShirley  (Exponent + 1) / (8 pi) c^Exponent F / ((wo.wh) max(n.wi, n.wo))
+/// BRDFLab, where the table comes from, has 1/pi for CookTorrance; with that, peaks would be four times those of the other families and of the data.
 
 #include <string>
 #include <vector>

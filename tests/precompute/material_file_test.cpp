@@ -245,7 +245,7 @@ TEST(NganModel, LobesBesideOurModels) {
   EXPECT_LE(std::abs(nganLobe({.family = NganFamily::blinnPhong, .width = 30}, wo, wi) - 32 / lobe64::kTwoPi * std::pow(wh.z, 30)), 1e-12);
   const double tan2 = 1 / (wh.z * wh.z) - 1;
   EXPECT_LE(std::abs(nganLobe({.family = NganFamily::cookTorrance, .width = .3}, wo, wi) -
-                     grooveMasking(wo, wi, wh) * std::exp(-tan2 / .09) / (lobe64::kPi * .09 * std::pow(wh.z, 4) * wo.z * wi.z)),
+                     grooveMasking(wo, wi, wh) * std::exp(-tan2 / .09) / (lobe64::kFourPi * .09 * std::pow(wh.z, 4) * wo.z * wi.z)),
             1e-12);
   // Lafortune's lobe is 1 for the mirror direction with these coefficients.
   const Vec3 mirror(-wo.x, -wo.y, wo.z);

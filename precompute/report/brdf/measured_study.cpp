@@ -105,13 +105,13 @@ Figure factorisationFigure(const std::vector<MeasuredMaterial>& materials) {
                 .note = "Luminance, both directions up to 80 degrees. The eight materials of Ngan et al. and what is given as a file, best model each. Factorisations where the grid resolves the lobe.",
                 .logX = true,
                 .logY = true,
-                .curves = {{"fitted model", {}, {}}, {"3 lobes, no warp", {}, {}}, {"9 fitted lobes (ours)", {}, {}}, {"1 lobe each, isotropic", {}, {}, true}, {"16 factored terms", {}, {}, true}, {"64 factored terms", {}, {}, true}, {"256 factored terms", {}, {}, true}}};
+                .curves = {{"model, fitted by rho cos", {}, {}}, {"its 3 lobes", {}, {}}, {"model, fitted by log", {}, {}}, {"its 9 fitted lobes (ours)", {}, {}}, {"16 factored terms", {}, {}, true}, {"64 factored terms", {}, {}, true}, {"256 factored terms", {}, {}, true}}};
   std::vector<const MeasuredMaterial*> order;
   for (const auto& m : materials)
-    if (!std::isnan(m.factored256)) order.push_back(&m);
+    if (!std::isnan(m.cosineModel)) order.push_back(&m);
   std::stable_sort(order.begin(), order.end(), [](const auto* a, const auto* b) { return a->best.fit.width < b->best.fit.width; });
   for (const auto* m : order) {
-    const double values[] = {m->best.error, m->best.mixtureError, m->ours, m->best.isotropicError, m->factored16, m->factored64, m->factored256};
+    const double values[] = {m->cosineModel, m->cosineMixture, m->best.error, m->ours, m->factored16, m->factored64, m->factored256};
     for (std::size_t c = 0; c < figure.curves.size(); ++c) push(figure.curves[c], m->best.fit.width, values[c]);
   }
   return figure;
@@ -184,9 +184,14 @@ MeasuredStudy studyMeasured(const std::vector<std::filesystem::path>& files, boo
     const auto& [file, data] = items[i];
     const MaterialStudy one = studyMaterial(data, {.models = kModels, .lobes = 3, .fit = {.fitF90 = true}, .grid = kGrid, .errorGrid = kErrorGrid, .threads = 1});
     MeasuredMaterial& m = study.materials[i];
-    m = {.file = file, .name = data.name, .form = data.form, .best = one.chosen(), .ours = kUndefined, .factored16 = kUndefined, .factored64 = kUndefined, .factored256 = kUndefined};
+    m = {.file = file, .name = data.name, .form = data.form, .best = one.chosen(), .cosineModel = kUndefined, .cosineMixture = kUndefined, .ours = kUndefined, .factored16 = kUndefined, .factored64 = kUndefined, .factored256 = kUndefined};
     const bool ofNgan = data.form != MaterialForm::ngan && published.contains(plainName(data.name));
-    if ((ofNgan || data.form == MaterialForm::merl) && m.best.fit.width * kAzimuths >= 12.0) {
+    const bool inFigure = ofNgan || data.form == MaterialForm::merl;
+    if (inFigure) {
+      const MaterialStudy cosine = studyMaterial(data, {.models = kModels, .lobes = 3, .fit = {.metric = FitMetric::cosine, .fitF90 = true}, .grid = kGrid, .errorGrid = kErrorGrid, .threads = 1});
+      m.cosineModel = cosine.chosen().error, m.cosineMixture = cosine.chosen().mixtureError;
+    }
+    if (inFigure && m.best.fit.width * kAzimuths >= 12.0) {
       const auto value = [&](const Vec3& wo, const Vec3& wi) { return luminance(data.reflectance(wo, wi)) * wi.z; };
       const auto errors = factorisationErrors(value, kWidestMeasured, quick ? 56 : kPolar, quick ? 128 : kAzimuths, {16, 64, 256});
       m.factored16 = errors[0], m.factored64 = errors[1], m.factored256 = errors[2];

@@ -16,8 +16,9 @@ struct MeasuredMaterial {
   std::string file, name;
   MaterialForm form = MaterialForm::merl;
   ModelFit best;
+  double cosineModel = 0.0, cosineMixture = 0.0;  ///< the best model by FitMetric::cosine, as Ngan et al. and the supplement fit, and its lobes; NaN as the factorisations are
   double ours = 0.0;  ///< what a shader reads (reflectance_table.h); NaN for Ashikhmin-Shirley, which has no table
-  double factored16 = 0.0, factored64 = 0.0, factored256 = 0.0;  ///< NaN where the grid does not resolve the lobe, and for materials that Ngan did not fit
+  double factored16 = 0.0, factored64 = 0.0, factored256 = 0.0;  ///< NaN where the grid does not resolve the lobe, and in tables for materials that Ngan did not fit
 };
 
 /// One family of Ngan's, fitted anew to a reconstruction of the material that it was published for, by their metric.

@@ -40,6 +40,8 @@ constexpr Column kColumns[] = {{"parameter", "parameter", parameter},
                                {"isotropic", "equation_11_isotropic_warp", [](const MeasuredMaterial& m) { return m.best.isotropicError; }},
                                {"chosen", "equation_11_chosen_warp", [](const MeasuredMaterial& m) { return m.best.chosenError; }},
                                {"ours", "equation_11_ours", [](const MeasuredMaterial& m) { return m.ours; }},
+                               {"by cos", "equation_11_model_by_cosine", [](const MeasuredMaterial& m) { return m.cosineModel; }},
+                               {"3 lobes", "equation_11_mixture_by_cosine", [](const MeasuredMaterial& m) { return m.cosineMixture; }},
                                {"16", "factored_16", [](const MeasuredMaterial& m) { return m.factored16; }},
                                {"64", "factored_64", [](const MeasuredMaterial& m) { return m.factored64; }},
                                {"256", "factored_256", [](const MeasuredMaterial& m) { return m.factored256; }}};
@@ -61,11 +63,11 @@ constexpr RefitColumn kRefitColumns[] = {{"published", "published_parameter", &N
 }  // namespace
 
 std::string measuredTable(const MeasuredStudy& study) {
-  std::string text = "\nmeasured materials, the best model of each; equation (11) of luminance against the data, directions to 80 degrees\n" + padded("source", 6) + padded("material", 36) + padded("model", 18);
+  std::string text = "\nmeasured materials, the best model of each; equation (11) of luminance against the data, directions to 80 degrees\n" + padded("source", 6) + padded("material", 40) + padded("model", 18);
   for (const Column& column : kColumns) text += padded(column.title, 10);
   text += "\n";
   for (const MeasuredMaterial& m : study.materials) {
-    text += padded(formName(m.form), 6) + padded(m.name, 36) + padded(modelJsonName(m.best.kind), 18);
+    text += padded(formName(m.form), 6) + padded(m.name, 40) + padded(modelJsonName(m.best.kind), 18);
     for (const Column& column : kColumns) text += padded(column.value(m), 10);
     text += "\n";
   }
@@ -99,7 +101,7 @@ Json measuredJson(const MeasuredStudy& study) {
 std::string measuredHtml(const MeasuredStudy& study) {
   std::string html =
       "<h2>Measured materials</h2>\n<p class=\"soft\">The best of six models, fitted to log(1 + &rho; cos); equation (11) of luminance against the data, both directions up to 80 degrees: of the model "
-      "itself, of three lobes in place of its distribution, of those warped isotropically and by the chosen rule, of the nine lobes that a shader reads, and of 16, 64 and 256 factored "
+      "itself, of three lobes in place of its distribution, of those warped isotropically and by the chosen rule, of the nine lobes that a shader reads; of the best model fitted to &rho; cos and its three lobes; and of 16, 64 and 256 factored "
       "terms.</p>\n<div class=\"wide\"><table><tr><th>material</th><th>source</th><th>model</th>";
   for (const Column& column : kColumns) html += "<th>" + std::string(column.title) + "</th>";
   html += "</tr>\n";
