@@ -12,7 +12,8 @@ namespace {
 Material onlyMaterial(const std::filesystem::path& file, const WarningHandler& warn) {
   const Scene source = readGltfScene(readFile(file), file, warn);
   if (source.materials.empty()) throw inputError(file.string(), "has no material", "make one with chiaro-precompute material");
-  if (!source.textures.empty()) throw inputError(file.string(), "has textures, which cannot be put on another mesh", "name a material of plain factors");
+  if (!source.textures.empty())
+    throw inputError(file.string(), "has textures, which cannot be put on another mesh", "name a material of plain factors");
   return source.materials.front();
 }
 

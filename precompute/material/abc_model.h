@@ -1,5 +1,6 @@
 #pragma once
-/// The ABC microfacet model (Low, Kronander, Ynnerman, Unger, BRDF Models for Accurate and Efficient Rendering of Glossy Surfaces, 2012, eq. 14 to 16):
+/// The ABC microfacet model (Low, Kronander, Ynnerman, Unger, BRDF Models for Accurate and Efficient Rendering of Glossy Surfaces, 2012, eq. 14
+/// to 16):
 ///   rho = kD / pi + F G D / (pi (n.wi) (n.wo)),  D = A / (1 + B (1 - n.wh))^C
 /// F: of an unpolarised dielectric of index `ior`; G: the groove masking of Cook and Torrance.
 

@@ -63,7 +63,8 @@ double csvNumber(const std::string& field, const std::string& where, std::size_t
     const auto result = std::from_chars(first, last, value);
     whole = result.ec == std::errc() && result.ptr == last;
   }
-  if (!whole || !std::isfinite(value)) throw inputError(placeOf(where, line), "\"" + field + "\" is no finite number", "write one such as 0.25");
+  if (!whole || !std::isfinite(value))
+    throw inputError(placeOf(where, line), "\"" + field + "\" is no finite number", "write one such as 0.25");
   return value;
 }
 

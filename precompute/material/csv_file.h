@@ -13,7 +13,8 @@ struct CsvRow {
   std::vector<std::string> fields;
 };
 
-/// Every line that is not empty. `where` names the file. Throws Error (unreadableInput): no row, a quote that is not closed, or a zero byte, which no text has.
+/// Every line that is not empty. `where` names the file. Throws Error (unreadableInput): no row, a quote that is not closed, or a zero byte,
+/// which no text has.
 std::vector<CsvRow> readCsv(std::span<const std::uint8_t> text, const std::string& where);
 
 /// The number that is all of `field`, blanks around it aside. Throws Error (unreadableInput), with `where` and `line`, unless it is finite.

@@ -13,7 +13,8 @@ using lobe64::Vec3;
 std::vector<FitSample> fitSamples(const Reflectance& reflectance, double widest, const FitGrid& grid, const std::string& where) {
   constexpr std::size_t kLeast = 100;
   const double least = std::cos(widest);
-  const std::size_t stepD = MerlTable::kThetaDiff / static_cast<std::size_t>(grid.thetaDiff), stepP = MerlTable::kPhiDiff / static_cast<std::size_t>(grid.phiDiff);
+  const std::size_t stepD = MerlTable::kThetaDiff / static_cast<std::size_t>(grid.thetaDiff),
+                    stepP = MerlTable::kPhiDiff / static_cast<std::size_t>(grid.phiDiff);
   std::vector<FitSample> samples;
   double total = 0.0;
   for (std::size_t h = 0; h < MerlTable::kThetaHalf; ++h)
@@ -26,11 +27,17 @@ std::vector<FitSample> fitSamples(const Reflectance& reflectance, double widest,
         if (!(rho.x >= 0.0 && rho.y >= 0.0 && rho.z >= 0.0 && rho.x + rho.y + rho.z < 1e30)) continue;
         // The steps of thetaHalf grow as 2 h + 1.
         const double weight = halfDifferenceMeasure(angles) * (2.0 * static_cast<double>(h) + 1.0);
-        samples.push_back({.wo = wo, .wi = wi, .rho = rho, .fresnel = lobe64::fresnelSchlickWeight(std::cos(angles.thetaDiff)), .weight = weight});
+        samples.push_back({.wo = wo,
+                           .wi = wi,
+                           .rho = rho,
+                           .fresnel = lobe64::fresnelSchlickWeight(std::cos(angles.thetaDiff)),
+                           .weight = weight});
         total += weight;
       }
   if (samples.size() < kLeast)
-    throw inputError(where, "has " + std::to_string(samples.size()) + " measured pairs of directions within " + std::to_string(std::lround(widest * 180.0 / lobe64::kPi)) + " degrees",
+    throw inputError(where,
+                     "has " + std::to_string(samples.size()) + " measured pairs of directions within " +
+                         std::to_string(std::lround(widest * 180.0 / lobe64::kPi)) + " degrees",
                      "a fit needs more: measure again");
   for (auto& sample : samples) sample.weight /= total;
   return samples;

@@ -33,10 +33,18 @@ double slice(const Reflectance& reflectance, double view, double half) {
 }
 
 Figure distributionFigure(const NdfTable& table, const MaterialStudy& study) {
-  Figure figure{.id = "distribution", .title = study.name + ": distribution of microfacet normals", .xLabel = "angle from the normal, degrees", .yLabel = "distribution", .note = {}, .logX = true, .logY = true, .curves = {}};
+  Figure figure{.id = "distribution",
+                .title = study.name + ": distribution of microfacet normals",
+                .xLabel = "angle from the normal, degrees",
+                .yLabel = "distribution",
+                .note = {},
+                .logX = true,
+                .logY = true,
+                .curves = {}};
   const NdfWidth scaled = fitNdfWidth(study.chosen().kind, [&](double angle) { return table.at(angle); });
   const auto model = fittedNdf(study.chosen().kind, study.chosen().fit.width);
-  Curve data = curveOf("given", 0, false), fit = curveOf(modelJsonName(study.chosen().kind), 1, true), mixture = curveOf(std::to_string(study.direct.lobes.size()) + " lobes", 2, true);
+  Curve data = curveOf("given", 0, false), fit = curveOf(modelJsonName(study.chosen().kind), 1, true),
+        mixture = curveOf(std::to_string(study.direct.lobes.size()) + " lobes", 2, true);
   for (int i = 0; i < kPoints; ++i) {
     const double degrees = degreesOf(i), angle = radians(degrees);
     double sum = 0.0;
@@ -53,12 +61,19 @@ Figure distributionFigure(const NdfTable& table, const MaterialStudy& study) {
 
 Figure materialFigure(const MaterialData& data, const MaterialStudy& study) {
   if (data.ndf) return distributionFigure(*data.ndf, study);
-  Figure figure{.id = "material", .title = study.name + ": data and " + modelJsonName(study.chosen().kind), .xLabel = "half vector from the normal, degrees", .yLabel = "luminance of rho cos, 1/sr",
-                .note = "In the plane of incidence, half vectors leaning towards the viewer. Lines: data. Dashed: fit.", .logX = true, .logY = true, .curves = {}};
+  Figure figure{.id = "material",
+                .title = study.name + ": data and " + modelJsonName(study.chosen().kind),
+                .xLabel = "half vector from the normal, degrees",
+                .yLabel = "luminance of rho cos, 1/sr",
+                .note = "In the plane of incidence, half vectors leaning towards the viewer. Lines: data. Dashed: fit.",
+                .logX = true,
+                .logY = true,
+                .curves = {}};
   const Reflectance fit = studiedReflectance(study);
   int colour = 0;
   for (const int view : {0, 30, 60, 75}) {
-    Curve truth = curveOf("data, " + std::to_string(view) + " deg", colour, false), model = curveOf("fit, " + std::to_string(view) + " deg", colour, true);
+    Curve truth = curveOf("data, " + std::to_string(view) + " deg", colour, false),
+          model = curveOf("fit, " + std::to_string(view) + " deg", colour, true);
     for (int i = 0; i < kPoints; ++i) {
       const double degrees = degreesOf(i);
       truth.x.push_back(degrees), truth.y.push_back(slice(data.reflectance, radians(view), radians(degrees)));

@@ -20,7 +20,10 @@ class NamedTable {
   NamedTable(std::vector<CsvRow> rows, std::string where) : rows_(std::move(rows)), where_(std::move(where)) {
     for (const auto& row : rows_)
       if (row.fields.size() != rows_[0].fields.size())
-        throw inputError(place(row), "has " + std::to_string(row.fields.size()) + " fields, the line of names " + std::to_string(rows_[0].fields.size()), "complete it");
+        throw inputError(
+            place(row),
+            "has " + std::to_string(row.fields.size()) + " fields, the line of names " + std::to_string(rows_[0].fields.size()),
+            "complete it");
     if (rows_.size() < 2) throw inputError(where_, "has no rows under its line of names", "name a whole table");
   }
   std::size_t size() const { return rows_.size() - 1; }
@@ -55,20 +58,45 @@ MaterialData sgdRow(const NamedTable& table, std::size_t row) {
   for (std::size_t c = 0; c < 3; ++c) {
     const std::string end = std::string("_") + "rgb"[c];
     const auto number = [&](const char* column) { return table.number(row, column + end); };
-    channels[c] = {.rhoD = number("rhoD"), .rhoS = number("rhoS"), .alpha = table.positive(row, "alpha" + end), .p = number("p"), .f0 = number("f0"), .f1 = number("f1"),
-                   .kap = number("kap"), .lambda = number("lambda"), .c = number("c"), .k = number("k"), .theta0 = number("theta0")};
+    channels[c] = {.rhoD = number("rhoD"),
+                   .rhoS = number("rhoS"),
+                   .alpha = table.positive(row, "alpha" + end),
+                   .p = number("p"),
+                   .f0 = number("f0"),
+                   .f1 = number("f1"),
+                   .kap = number("kap"),
+                   .lambda = number("lambda"),
+                   .c = number("c"),
+                   .k = number("k"),
+                   .theta0 = number("theta0")};
   }
-  return {.name = table.text(row, "material"), .form = MaterialForm::sgd, .reflectance = sgdReflectance(channels), .ndf = {}, .ngan = {}};
+  return {.name = table.text(row, "material"),
+          .form = MaterialForm::sgd,
+          .reflectance = sgdReflectance(channels),
+          .ndf = {},
+          .ngan = {}};
 }
 
 MaterialData abcRow(const NamedTable& table, std::size_t row) {
-  const AbcModel model{.diffuse = table.colour(row, "kD"), .a = table.colour(row, "A"), .b = table.positive(row, "B"), .c = table.number(row, "C"), .ior = table.positive(row, "ior")};
-  return {.name = table.text(row, "material"), .form = MaterialForm::abc, .reflectance = abcReflectance(model), .ndf = {}, .ngan = {}};
+  const AbcModel model{.diffuse = table.colour(row, "kD"),
+                       .a = table.colour(row, "A"),
+                       .b = table.positive(row, "B"),
+                       .c = table.number(row, "C"),
+                       .ior = table.positive(row, "ior")};
+  return {.name = table.text(row, "material"),
+          .form = MaterialForm::abc,
+          .reflectance = abcReflectance(model),
+          .ndf = {},
+          .ngan = {}};
 }
 
 MaterialData nganRow(const NamedTable& table, std::size_t row, const std::string& where) {
   NganModel model = parseNganModel(table.text(row, "lobes"), where, table.line(row));
-  return {.name = table.text(row, "material") + "/" + table.text(row, "fit"), .form = MaterialForm::ngan, .reflectance = nganReflectance(model), .ndf = {}, .ngan = model};
+  return {.name = table.text(row, "material") + "/" + table.text(row, "fit"),
+          .form = MaterialForm::ngan,
+          .reflectance = nganReflectance(model),
+          .ndf = {},
+          .ngan = model};
 }
 
 /// Without folders and endings.
@@ -92,17 +120,22 @@ std::vector<MaterialData> readMaterials(const std::filesystem::path& path) {
     const auto lookup = [table](const Vec3& wo, const Vec3& wi) { return table->at(halfDifference(wo, wi)); };
     return {{.name = plainName(path), .form = MaterialForm::merl, .reflectance = lookup, .ndf = {}, .ngan = {}}};
   }
-  if (path.extension() != ".csv") throw inputError(where, "is of no form that is known by its name", "name a .binary, .binary.xz or .csv file");
+  if (path.extension() != ".csv")
+    throw inputError(where, "is of no form that is known by its name", "name a .binary, .binary.xz or .csv file");
   const auto bytes = readFile(path);
   auto rows = readCsv(bytes, where);
   const auto& names = rows[0].fields;
   if (std::find(names.begin(), names.end(), "material") == names.end())
-    return {{.name = plainName(path), .form = MaterialForm::ndf, .reflectance = {}, .ndf = readNdfTable(bytes, where), .ngan = {}}};
+    return {
+        {.name = plainName(path), .form = MaterialForm::ndf, .reflectance = {}, .ndf = readNdfTable(bytes, where), .ngan = {}}};
   const NamedTable table(std::move(rows), where);
   const bool sgd = table.has("rhoD_r"), abc = table.has("kD_r"), ngan = table.has("lobes");
-  if (!sgd && !abc && !ngan) throw inputError(where, "its columns are of no table that is known", "name one with columns rhoD_r (shifted gamma), kD_r (ABC) or lobes (Ngan)");
+  if (!sgd && !abc && !ngan)
+    throw inputError(where, "its columns are of no table that is known",
+                     "name one with columns rhoD_r (shifted gamma), kD_r (ABC) or lobes (Ngan)");
   std::vector<MaterialData> materials;
-  for (std::size_t row = 0; row < table.size(); ++row) materials.push_back(sgd ? sgdRow(table, row) : abc ? abcRow(table, row) : nganRow(table, row, where));
+  for (std::size_t row = 0; row < table.size(); ++row)
+    materials.push_back(sgd ? sgdRow(table, row) : abc ? abcRow(table, row) : nganRow(table, row, where));
   return materials;
 }
 
@@ -110,9 +143,11 @@ MaterialData readMaterial(const std::filesystem::path& path, const std::string& 
   auto all = readMaterials(path);
   if (row.empty() && all.size() == 1) return all.front();
   if (row.empty())
-    throw usageError("--row", path.string() + " has " + std::to_string(all.size()) + " materials", "name one, such as --row " + all.front().name);
+    throw usageError("--row", path.string() + " has " + std::to_string(all.size()) + " materials",
+                     "name one, such as --row " + all.front().name);
   const auto found = std::find_if(all.begin(), all.end(), [&](const MaterialData& one) { return one.name == row; });
-  if (found == all.end()) throw usageError("--row", path.string() + " has no \"" + row + "\"", "name one of its rows, such as " + all.front().name);
+  if (found == all.end())
+    throw usageError("--row", path.string() + " has no \"" + row + "\"", "name one of its rows, such as " + all.front().name);
   return *found;
 }
 

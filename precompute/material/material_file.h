@@ -19,9 +19,9 @@ const char* formName(MaterialForm form);
 struct MaterialData {
   std::string name;  ///< the row's, or the file's without its endings
   MaterialForm form = MaterialForm::merl;
-  Reflectance reflectance;         ///< empty for a distribution alone
-  std::optional<NdfTable> ndf;     ///< then this
-  std::optional<NganModel> ngan;   ///< what `reflectance` is made of, in a table of Ngan's
+  Reflectance reflectance;        ///< empty for a distribution alone
+  std::optional<NdfTable> ndf;    ///< then this
+  std::optional<NganModel> ngan;  ///< what `reflectance` is made of, in a table of Ngan's
 };
 
 /// Every material of a file: one of a .binary, .binary.xz or a distribution, all rows of a table. Tables are known by the names in their first line:

@@ -66,7 +66,8 @@ class Residuals : public ceres::CostFunction {
     double* jacobian = jacobians != nullptr ? jacobians[0] : nullptr;
     for (std::size_t i = 0; i < samples_.size(); ++i) {
       const FitSample& s = samples_[i];
-      const Lobe first = lobeAt(p[kWidth], s, jacobian != nullptr), second = lobes_ > 1 ? lobeAt(p[kWidth2], s, jacobian != nullptr) : Lobe{};
+      const Lobe first = lobeAt(p[kWidth], s, jacobian != nullptr),
+                 second = lobes_ > 1 ? lobeAt(p[kWidth2], s, jacobian != nullptr) : Lobe{};
       const double lobe = (1.0 - p[kShare]) * first.value + p[kShare] * second.value;
       FresnelTerm f[3];
       for (std::size_t c = 0; c < 3; ++c) f[c] = fresnelTerm(family_.fresnel, p[kEdge], p[kSpecular + c], s.fresnel);
@@ -102,7 +103,9 @@ class Residuals : public ceres::CostFunction {
     constexpr double kStep = 1e-5;
     Lobe lobe{.value = family_.lobe(std::exp(logWidth), s.wo, s.wi), .byLogWidth = 0.0};
     if (derivative)
-      lobe.byLogWidth = (family_.lobe(std::exp(logWidth + kStep), s.wo, s.wi) - family_.lobe(std::exp(logWidth - kStep), s.wo, s.wi)) / (2.0 * kStep);
+      lobe.byLogWidth =
+          (family_.lobe(std::exp(logWidth + kStep), s.wo, s.wi) - family_.lobe(std::exp(logWidth - kStep), s.wo, s.wi)) /
+          (2.0 * kStep);
     return lobe;
   }
 
@@ -116,7 +119,8 @@ class Residuals : public ceres::CostFunction {
 struct TwoColumns {
   double xx = 0, xy = 0, yy = 0, xz = 0, yz = 0, zz = 0;
   void add(double x, double y, double z, double weight) {
-    xx += weight * x * x, xy += weight * x * y, yy += weight * y * y, xz += weight * x * z, yz += weight * y * z, zz += weight * z * z;
+    xx += weight * x * x, xy += weight * x * y, yy += weight * y * y, xz += weight * x * z, yz += weight * y * z,
+        zz += weight * z * z;
   }
   double error(double a, double b) const { return zz - 2.0 * (a * xz + b * yz) + a * a * xx + 2.0 * a * b * xy + b * b * yy; }
   std::array<double, 2> solve(double mostA, double mostB) const {
@@ -139,7 +143,8 @@ struct TwoColumns {
 double mostOf(Fresnel kind) { return kind == Fresnel::schlick ? 1.0 : 1e6; }
 
 /// The colours that suit one width, by linear least squares: the metric is taken as linear about the data, and the diffuse part as whole.
-MaterialFit linearFit(const std::vector<FitSample>& samples, const FitFamily& family, FitMetric metric, double width, double edge) {
+MaterialFit linearFit(const std::vector<FitSample>& samples, const FitFamily& family, FitMetric metric, double width,
+                      double edge) {
   MaterialFit fit;
   fit.width = fit.width2 = width;
   fit.f90 = edge;
@@ -147,7 +152,8 @@ MaterialFit linearFit(const std::vector<FitSample>& samples, const FitFamily& fa
   for (const FitSample& s : samples) {
     const double lobe = family.lobe(width, s.wo, s.wi);
     // F is linear in the colour.
-    const double constant = fresnelTerm(family.fresnel, edge, 0.0, s.fresnel).value, by = fresnelTerm(family.fresnel, edge, 0.0, s.fresnel).byColour;
+    const double constant = fresnelTerm(family.fresnel, edge, 0.0, s.fresnel).value,
+                 by = fresnelTerm(family.fresnel, edge, 0.0, s.fresnel).byColour;
     for (std::size_t c = 0; c < 3; ++c) {
       const double data = s.rho[static_cast<int>(c)], k = s.wi.z * slope(metric, data * s.wi.z);
       columns[c].add(1.0 / lobe64::kPi, by * lobe, data - constant * lobe, s.weight * k * k);
@@ -172,7 +178,8 @@ double rootMeanSquare(const std::vector<FitSample>& samples, const FitFamily& fa
   return std::sqrt(sum);
 }
 
-MaterialFit refined(const std::vector<FitSample>& samples, const FitFamily& family, const FitOptions& options, const MaterialFit& start) {
+MaterialFit refined(const std::vector<FitSample>& samples, const FitFamily& family, const FitOptions& options,
+                    const MaterialFit& start) {
   Parameters p = parametersOf(start);
   ceres::Problem::Options problemOptions;
   problemOptions.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
@@ -202,7 +209,8 @@ MaterialFit refined(const std::vector<FitSample>& samples, const FitFamily& fami
   solver.logging_type = ceres::SILENT;
   ceres::Solver::Summary summary;
   ceres::Solve(solver, &problem, &summary);
-  if (!summary.IsSolutionUsable()) throw Error(ExitCode::failed, family.name, "the fit fails: " + summary.message, "try another model with --model");
+  if (!summary.IsSolutionUsable())
+    throw Error(ExitCode::failed, family.name, "the fit fails: " + summary.message, "try another model with --model");
   MaterialFit fit = fitOf(p);
   if (options.lobes < 2) fit.width2 = fit.width, fit.share = 0.0;
   fit.error = rootMeanSquare(samples, family, options.metric, fit);
@@ -221,7 +229,8 @@ std::optional<int> modelFromJsonName(const std::string& name) {
 
 FitFamily modelFamily(int kind) {
   const auto parameter = [kind](double width) {
-    return lobe64::modelHasExponent(kind) ? std::clamp(2.0 / (width * width) - 1.0, lobe64::kMinExponent, lobe64::kMaxExponent) : width;
+    return lobe64::modelHasExponent(kind) ? std::clamp(2.0 / (width * width) - 1.0, lobe64::kMinExponent, lobe64::kMaxExponent)
+                                          : width;
   };
   return {.name = kJsonNames[kind],
           .fresnel = Fresnel::schlick,
@@ -249,7 +258,8 @@ MaterialFit fitMaterial(const std::vector<FitSample>& samples, const FitFamily& 
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return scan[a].error < scan[b].error; });
   std::vector<std::size_t> starts;
   for (const std::size_t i : order) {
-    const bool near = std::any_of(starts.begin(), starts.end(), [&](std::size_t j) { return std::max(i, j) - std::min(i, j) <= 2; });
+    const bool near =
+        std::any_of(starts.begin(), starts.end(), [&](std::size_t j) { return std::max(i, j) - std::min(i, j) <= 2; });
     if (!near && starts.size() < static_cast<std::size_t>(options.starts)) starts.push_back(i);
   }
   MaterialFit best;

@@ -32,23 +32,23 @@ struct FitFamily {
 
 /// The round forms of the models of shaders/lobe/ndf.glsl. Exponents n are fitted as the width sqrt(2 / (n + 1)).
 FitFamily modelFamily(int kind);
-const char* modelJsonName(int kind);                     ///< ggx, cookTorrance, ...: as CHIARO_materials_reflectance has them
+const char* modelJsonName(int kind);  ///< ggx, cookTorrance, ...: as CHIARO_materials_reflectance has them
 std::optional<int> modelFromJsonName(const std::string& name);
 
 struct FitOptions {
   FitMetric metric = FitMetric::logarithmic;
-  int lobes = 1;                ///< 1 or 2: distributions that are added up
-  bool fitF90 = false;          ///< else F90 is 1
-  int starts = 2;               ///< widths, the best of a scan, that the nonlinear fit starts from
+  int lobes = 1;        ///< 1 or 2: distributions that are added up
+  bool fitF90 = false;  ///< else F90 is 1
+  int starts = 2;       ///< widths, the best of a scan, that the nonlinear fit starts from
 };
 
 struct MaterialFit {
   double width = 0.1, width2 = 0.1, share = 0.0;  ///< the second lobe's, and its part of the distribution
   double f90 = 1.0;                               ///< schlick: F90; scaled: F0; none: 1
   lobe64::Vec3 diffuse{0.0};
-  lobe64::Vec3 specular{0.0};                     ///< schlick: F0 over F90; else the scale
-  double error = 0.0;                             ///< root of the weighted mean square of the metric's differences
-  double cosineError = 0.0;                       ///< the same by FitMetric::cosine: what Ngan et al. tabulate
+  lobe64::Vec3 specular{0.0};  ///< schlick: F0 over F90; else the scale
+  double error = 0.0;          ///< root of the weighted mean square of the metric's differences
+  double cosineError = 0.0;    ///< the same by FitMetric::cosine: what Ngan et al. tabulate
 
   lobe64::Vec3 f0() const { return f90 * specular; }
 };

@@ -31,14 +31,21 @@ Json lobesOf(const NdfMixture& mixture) {
 
 Json modelJson(const ModelFit& one, MaterialForm form) {
   const MaterialFit& fit = one.fit;
-  Json json{{"model", modelJsonName(one.kind)}, {"parameter", parameterOf(one.kind, fit.width)}, {"width", fit.width}, {"error", fit.error}};
+  Json json{{"model", modelJsonName(one.kind)},
+            {"parameter", parameterOf(one.kind, fit.width)},
+            {"width", fit.width},
+            {"error", fit.error}};
   if (form != MaterialForm::ndf) {
-    if (fit.share > 0.0) json["second_lobe"] = {{"parameter", parameterOf(one.kind, fit.width2)}, {"width", fit.width2}, {"share", fit.share}};
+    if (fit.share > 0.0)
+      json["second_lobe"] = {{"parameter", parameterOf(one.kind, fit.width2)}, {"width", fit.width2}, {"share", fit.share}};
     json["diffuse"] = list(fit.diffuse);
     json["f0"] = list(fit.f0());
     json["f90"] = fit.f90;
     json["cosine_error"] = fit.cosineError;
-    json["equation_11"] = {{"model", number(one.error)}, {"mixture", number(one.mixtureError)}, {"isotropic_warp", number(one.isotropicError)}, {"chosen_warp", number(one.chosenError)}};
+    json["equation_11"] = {{"model", number(one.error)},
+                           {"mixture", number(one.mixtureError)},
+                           {"isotropic_warp", number(one.isotropicError)},
+                           {"chosen_warp", number(one.chosenError)}};
   }
   json["lobes"] = lobesOf(one.mixture);
   json["lobes_error"] = one.mixture.error;
@@ -57,19 +64,26 @@ std::string materialGltf(const MaterialStudy& study, const std::string& name, co
   if (fit.f90 >= kNoLess) {
     reflectance["specularColor"] = list(fit.f0());
   } else {
-    // F0 = min(.04 specularColorFactor, 1) specularFactor and F90 = specularFactor, at the index of 1.5 that a material without KHR_materials_ior has.
+    // F0 = min(.04 specularColorFactor, 1) specularFactor and F90 = specularFactor, at the index of 1.5 that a material without KHR_materials_ior
+    // has.
     extensions["KHR_materials_specular"] = {{"specularFactor", fit.f90}, {"specularColorFactor", list(fit.specular / 0.04)}};
     used.push_back("KHR_materials_specular");
   }
   extensions["CHIARO_materials_reflectance"] = reflectance;
   const Json base = Json::array({fit.diffuse.x, fit.diffuse.y, fit.diffuse.z, 1.0});
   const Json material{{"name", name},
-                      {"pbrMetallicRoughness", {{"baseColorFactor", base}, {"metallicFactor", 0.0}, {"roughnessFactor", std::sqrt(std::min(widthEquivalent(kind, fit.width), 1.0))}}},
+                      {"pbrMetallicRoughness",
+                       {{"baseColorFactor", base},
+                        {"metallicFactor", 0.0},
+                        {"roughnessFactor", std::sqrt(std::min(widthEquivalent(kind, fit.width), 1.0))}}},
                       {"extensions", extensions}};
-  return text({{"asset", {{"version", "2.0"}, {"generator", generator}}}, {"extensionsUsed", used}, {"materials", Json::array({material})}});
+  return text({{"asset", {{"version", "2.0"}, {"generator", generator}}},
+               {"extensionsUsed", used},
+               {"materials", Json::array({material})}});
 }
 
-std::string materialJson(const MaterialStudy& study, const MaterialOptions& options, const std::string& file, const std::string& version) {
+std::string materialJson(const MaterialStudy& study, const MaterialOptions& options, const std::string& file,
+                         const std::string& version) {
   Json json{{"program", "chiaro-precompute material"},
             {"version", version},
             {"file", file},
@@ -80,7 +94,8 @@ std::string materialJson(const MaterialStudy& study, const MaterialOptions& opti
             {"chosen", modelJsonName(study.chosen().kind)}};
   json["models"] = Json::array();
   for (const ModelFit& one : study.models) json["models"].push_back(modelJson(one, study.form));
-  if (study.form == MaterialForm::ndf) json["distribution"] = {{"lobes", lobesOf(study.direct)}, {"lobes_error", study.direct.error}};
+  if (study.form == MaterialForm::ndf)
+    json["distribution"] = {{"lobes", lobesOf(study.direct)}, {"lobes_error", study.direct.error}};
   return text(json);
 }
 

@@ -46,7 +46,8 @@ MaterialStudy studyMaterial(const MaterialData& data, const MaterialOptions& opt
       const auto first = fittedNdf(kind, one.fit.width), second = fittedNdf(kind, one.fit.width2);
       // Both lobes are normalised by their widths; the first one's smooth factor stands for both.
       const double part = one.fit.share * one.fit.width * one.fit.width / (one.fit.width2 * one.fit.width2);
-      one.mixture = fitNdfMixture([&](double angle) { return (1.0 - one.fit.share) * first(angle) + part * second(angle); }, options.lobes);
+      one.mixture =
+          fitNdfMixture([&](double angle) { return (1.0 - one.fit.share) * first(angle) + part * second(angle); }, options.lobes);
       one.mixtureError = reconstructionError(fine, mixtureReflectance(kind, one.fit, one.mixture, LobeWarp::none));
       one.isotropicError = reconstructionError(fine, mixtureReflectance(kind, one.fit, one.mixture, LobeWarp::isotropic));
       one.chosenError = reconstructionError(fine, mixtureReflectance(kind, one.fit, one.mixture, LobeWarp::chosen));
@@ -57,6 +58,8 @@ MaterialStudy studyMaterial(const MaterialData& data, const MaterialOptions& opt
   return study;
 }
 
-Reflectance studiedReflectance(const MaterialStudy& study) { return fittedReflectance(modelFamily(study.chosen().kind), study.chosen().fit); }
+Reflectance studiedReflectance(const MaterialStudy& study) {
+  return fittedReflectance(modelFamily(study.chosen().kind), study.chosen().fit);
+}
 
 }  // namespace chiaro

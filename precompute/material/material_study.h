@@ -17,16 +17,16 @@ struct MaterialOptions {
   std::vector<int> models;  ///< kCookTorrance ...; of several the one of least error is taken
   int lobes = 3;            ///< spherical Gaussians of the distribution, 1..4
   FitOptions fit;
-  FitGrid grid;             ///< of the fit
+  FitGrid grid;  ///< of the fit
   FitGrid errorGrid{.thetaDiff = 45, .phiDiff = 36};
-  int threads = 0;          ///< never changes a figure
+  int threads = 0;  ///< never changes a figure
 };
 
 /// One model's fit. Squared errors are equation (11) of luminances, both directions up to kWidestMeasured.
 struct ModelFit {
   int kind = 0;
-  MaterialFit fit;      ///< for a distribution alone: its width, and error relative to the distribution
-  NdfMixture mixture;   ///< of the distribution with peak 1 at the normal
+  MaterialFit fit;              ///< for a distribution alone: its width, and error relative to the distribution
+  NdfMixture mixture;           ///< of the distribution with peak 1 at the normal
   double error = 0.0;           ///< equation (11), of the model itself
   double mixtureError = 0.0;    ///< with the mixture in its place, at half vectors
   double isotropicError = 0.0;  ///< warped by the paper's rule

@@ -8,7 +8,8 @@
 
 namespace chiaro {
 
-/// rho(wo, wi), 1/sr by channel, of a round material: unit directions in the tangent frame (z normal). NaN in every channel where the data say nothing.
+/// rho(wo, wi), 1/sr by channel, of a round material: unit directions in the tangent frame (z normal). NaN in every channel where the data say
+/// nothing.
 using Reflectance = std::function<lobe64::Vec3(const lobe64::Vec3& wo, const lobe64::Vec3& wi)>;
 
 /// Rec.709.

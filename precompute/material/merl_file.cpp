@@ -23,7 +23,9 @@ std::uint64_t littleEndian(std::span<const std::uint8_t> bytes) {
   return word;
 }
 
-std::size_t indexOf(std::size_t h, std::size_t d, std::size_t p) { return p + MerlTable::kPhiDiff * (d + MerlTable::kThetaDiff * h); }
+std::size_t indexOf(std::size_t h, std::size_t d, std::size_t p) {
+  return p + MerlTable::kPhiDiff * (d + MerlTable::kThetaDiff * h);
+}
 
 }  // namespace
 
@@ -36,7 +38,8 @@ double MerlTable::phiDiffOf(std::size_t bin) { return (static_cast<double>(bin) 
 
 Vec3 MerlTable::bin(std::size_t h, std::size_t d, std::size_t p) const {
   const std::size_t i = indexOf(h, d, p);
-  return Vec3(static_cast<double>(values_[i]), static_cast<double>(values_[i + kBins]), static_cast<double>(values_[i + 2 * kBins]));
+  return Vec3(static_cast<double>(values_[i]), static_cast<double>(values_[i + kBins]),
+              static_cast<double>(values_[i + 2 * kBins]));
 }
 
 Vec3 MerlTable::at(const HalfDifference& angles) const {
@@ -82,11 +85,15 @@ MerlTable readMerl(std::span<const std::uint8_t> file, const std::string& where)
   for (std::size_t k = 0; k < 3; ++k) {
     const auto size = littleEndian(file.subspan(4 * k, 4));
     if (size != kSizes[k])
-      throw inputError(where, "its header is not 90, 90, 180: number " + std::to_string(k + 1) + " is " + std::to_string(static_cast<std::int32_t>(size)),
+      throw inputError(where,
+                       "its header is not 90, 90, 180: number " + std::to_string(k + 1) + " is " +
+                           std::to_string(static_cast<std::int32_t>(size)),
                        "name a .binary file of the MERL layout");
   }
   if (file.size() != MerlTable::kFileBytes)
-    throw inputError(where, (file.size() < MerlTable::kFileBytes ? "is cut short: it has " : "is too long: it has ") + std::to_string(file.size()) + " of " + std::to_string(MerlTable::kFileBytes) + " bytes",
+    throw inputError(where,
+                     (file.size() < MerlTable::kFileBytes ? "is cut short: it has " : "is too long: it has ") +
+                         std::to_string(file.size()) + " of " + std::to_string(MerlTable::kFileBytes) + " bytes",
                      "copy it again");
   std::vector<float> values(3 * MerlTable::kBins);
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -128,7 +135,8 @@ std::vector<std::uint8_t> merlFileOf(const Reflectance& reflectance) {
     for (std::size_t d = 0; d < MerlTable::kThetaDiff; ++d)
       for (std::size_t p = 0; p < MerlTable::kPhiDiff; ++p) {
         const auto pair = directionPair({MerlTable::thetaHalfOf(h), MerlTable::thetaDiffOf(d), MerlTable::phiDiffOf(p)});
-        values[indexOf(h, d, p)] = pair.wo.z > 0.0 && pair.wi.z > 0.0 ? reflectance(pair.wo, pair.wi) : Vec3(lobe64::notANumber());
+        values[indexOf(h, d, p)] =
+            pair.wo.z > 0.0 && pair.wi.z > 0.0 ? reflectance(pair.wo, pair.wi) : Vec3(lobe64::notANumber());
       }
   for (int c = 0; c < 3; ++c)
     for (const auto& value : values) {

@@ -13,8 +13,9 @@
 
 namespace chiaro {
 
-/// Three int32 (90, 90, 180), then a plane of float64 for red, green and blue, little-endian: index phiDiff + 180 (thetaDiff + 90 thetaHalf), thetaHalf in steps of its
-/// root, phiDiff over [0, pi). Values times 1/1500, 1.15/1500, 1.66/1500 are reflectances; negative ones were not measured.
+/// Three int32 (90, 90, 180), then a plane of float64 for red, green and blue, little-endian: index phiDiff + 180 (thetaDiff + 90 thetaHalf),
+/// thetaHalf in steps of its root, phiDiff over [0, pi). Values times 1/1500, 1.15/1500, 1.66/1500 are reflectances; negative ones were not
+/// measured.
 class MerlTable {
  public:
   static constexpr std::size_t kThetaHalf = 90, kThetaDiff = 90, kPhiDiff = 180;
@@ -38,8 +39,8 @@ class MerlTable {
   std::vector<float> values_;
 };
 
-/// `file`: the bytes of a .binary; `where` names it. Throws Error (unreadableInput) unless it has just the right length and header and every value is finite, and where nothing
-/// was measured.
+/// `file`: the bytes of a .binary; `where` names it. Throws Error (unreadableInput) unless it has just the right length and header and every
+/// value is finite, and where nothing was measured.
 MerlTable readMerl(std::span<const std::uint8_t> file, const std::string& where);
 /// A .binary, or one packed as .xz (any name that ends so). Throws Error (unreadableInput).
 MerlTable readMerlFile(const std::filesystem::path& path);

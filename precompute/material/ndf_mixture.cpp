@@ -29,7 +29,8 @@ class Residuals : public ceres::CostFunction {
     for (std::size_t i = 0; i < points_.size(); ++i) {
       double sum = 0.0;
       for (std::size_t k = 0; k < count_; ++k) {
-        const double sharpness = std::exp(p[2 * k + 1]), lobe = std::exp(-sharpness * points_[i].versine), amplitude = p[2 * k] * p[2 * k];
+        const double sharpness = std::exp(p[2 * k + 1]), lobe = std::exp(-sharpness * points_[i].versine),
+                     amplitude = p[2 * k] * p[2 * k];
         sum += amplitude * lobe;
         if (jacobians == nullptr || jacobians[0] == nullptr) continue;
         double* row = jacobians[0] + i * 2 * count_;
@@ -63,7 +64,8 @@ NdfMixture fitNdfMixture(const std::function<double(double)>& ndf, int count) {
   constexpr int kPoints = 600;
   double peak = ndf(0.0);
   for (int i = 0; i <= kPoints; ++i) peak = std::max(peak, ndf(lobe64::kHalfPi * i / kPoints));
-  for (int i = 0; i <= kPoints; ++i) peak = std::max(peak, ndf(1e-5 * std::pow(lobe64::kHalfPi / 1e-5, static_cast<double>(i) / kPoints)));
+  for (int i = 0; i <= kPoints; ++i)
+    peak = std::max(peak, ndf(1e-5 * std::pow(lobe64::kHalfPi / 1e-5, static_cast<double>(i) / kPoints)));
   const double half = halfWidth(ndf, peak);
   // Points grow linearly up to half the peak's width, then in proportion.
   std::vector<Point> points;

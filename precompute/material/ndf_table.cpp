@@ -29,17 +29,21 @@ NdfTable readNdfTable(std::span<const std::uint8_t> csv, const std::string& wher
   for (std::size_t r = 0; r < rows.size(); ++r) {
     const auto& [line, fields] = rows[r];
     const std::string place = where + ":" + std::to_string(line);
-    if (fields.size() != 2) throw inputError(place, "has " + std::to_string(fields.size()) + " fields", "write an angle in degrees and a value");
+    if (fields.size() != 2)
+      throw inputError(place, "has " + std::to_string(fields.size()) + " fields", "write an angle in degrees and a value");
     if (r == 0 && isName(fields[0]) && isName(fields[1])) continue;
     const double degrees = csvNumber(fields[0], where, line), value = csvNumber(fields[1], where, line);
     const double radians = degrees / 180.0 * lobe64::kPi;
-    if (!(degrees >= 0.0 && degrees <= 90.0)) throw inputError(place, "the angle " + fields[0] + " is not between 0 and 90 degrees", "measure from the normal");
-    if (!table.angle.empty() && !(radians > table.angle.back())) throw inputError(place, "the angle " + fields[0] + " is not above the one before", "sort the rows");
+    if (!(degrees >= 0.0 && degrees <= 90.0))
+      throw inputError(place, "the angle " + fields[0] + " is not between 0 and 90 degrees", "measure from the normal");
+    if (!table.angle.empty() && !(radians > table.angle.back()))
+      throw inputError(place, "the angle " + fields[0] + " is not above the one before", "sort the rows");
     if (value < 0.0) throw inputError(place, "the distribution is negative", "give values from 0 on");
     table.angle.push_back(radians);
     table.value.push_back(value);
   }
-  if (table.angle.size() < 3) throw inputError(where, "has " + std::to_string(table.angle.size()) + " rows of numbers", "give at least three");
+  if (table.angle.size() < 3)
+    throw inputError(where, "has " + std::to_string(table.angle.size()) + " rows of numbers", "give at least three");
   if (!(table.peak() > 0.0)) throw inputError(where, "the distribution is 0 everywhere", "give one that is not");
   return table;
 }

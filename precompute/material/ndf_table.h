@@ -17,7 +17,8 @@ struct NdfTable {
   double peak() const;
 };
 
-/// CSV with or without a line of names. Throws Error (unreadableInput): fewer than three rows, not two numbers in a row, an angle out of order or of [0, 90], a negative value, all 0.
+/// CSV with or without a line of names. Throws Error (unreadableInput): fewer than three rows, not two numbers in a row, an angle out of order or
+/// of [0, 90], a negative value, all 0.
 NdfTable readNdfTable(std::span<const std::uint8_t> csv, const std::string& where);
 
 }  // namespace chiaro

@@ -14,7 +14,8 @@ NdfWidth fitNdfWidth(int kind, const std::function<double(double)>& ndf) {
     double aa = 0.0, ab = 0.0, bb = 0.0;
     for (int i = 0; i < kPoints; ++i) {
       // As fine near the normal as the sharpest width.
-      const double u = (i + 0.5) / kPoints, angle = lobe64::kHalfPi * u * u * u, step = 3.0 * lobe64::kHalfPi * u * u / kPoints, weight = std::sin(angle) * step;
+      const double u = (i + 0.5) / kPoints, angle = lobe64::kHalfPi * u * u * u, step = 3.0 * lobe64::kHalfPi * u * u / kPoints,
+                   weight = std::sin(angle) * step;
       const double a = model(angle), b = ndf(angle);
       aa += weight * a * a, ab += weight * a * b, bb += weight * b * b;
     }
@@ -28,7 +29,8 @@ NdfWidth fitNdfWidth(int kind, const std::function<double(double)>& ndf) {
     if (const NdfWidth one = at(kLeastFitWidth * std::pow(ratio, i)); one.error < best.error) best = one;
   // Golden section between the neighbours of the best.
   constexpr double kGolden = 0.6180339887498949;
-  double low = std::log(std::max(best.width / ratio, kLeastFitWidth)), high = std::log(std::min(best.width * ratio, kMostFitWidth));
+  double low = std::log(std::max(best.width / ratio, kLeastFitWidth)),
+         high = std::log(std::min(best.width * ratio, kMostFitWidth));
   while (high - low > 1e-7) {
     const double a = high - kGolden * (high - low), b = low + kGolden * (high - low);
     if (at(std::exp(a)).error <= at(std::exp(b)).error)

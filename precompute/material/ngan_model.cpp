@@ -19,12 +19,14 @@ constexpr const char* kNames[] = {"Ward", "WardDuer", "BlinnPhong", "LafortuneIs
 
 Vec3 colour(const std::string& text, const std::string& where, std::size_t line) {
   if (text.size() < 2 || text.front() != '(' || text.back() != ')')
-    throw inputError(where + ":" + std::to_string(line), "scale \"" + text + "\" is not (r,g,b)", "write three numbers in brackets");
+    throw inputError(where + ":" + std::to_string(line), "scale \"" + text + "\" is not (r,g,b)",
+                     "write three numbers in brackets");
   std::stringstream parts(text.substr(1, text.size() - 2));
   std::string part;
   std::vector<double> numbers;
   while (std::getline(parts, part, ',')) numbers.push_back(csvNumber(part, where, line));
-  if (numbers.size() != 3) throw inputError(where + ":" + std::to_string(line), "scale \"" + text + "\" has not three numbers", "write (r,g,b)");
+  if (numbers.size() != 3)
+    throw inputError(where + ":" + std::to_string(line), "scale \"" + text + "\" has not three numbers", "write (r,g,b)");
   return Vec3(numbers[0], numbers[1], numbers[2]);
 }
 
@@ -56,7 +58,8 @@ Reflectance nganReflectance(const NganModel& model) {
     if (!(wo.z > 0.0) || !(wi.z > 0.0)) return Vec3(0.0);
     const double w = lobe64::fresnelSchlickWeight(dot(wo, lobe64::halfVector(wo, wi)));
     Vec3 rho = model.diffuse / lobe64::kPi;
-    for (const NganLobe& l : model.lobes) rho += l.scale * (nganLobe(l, wo, wi) * (nganHasFresnel(l.family) ? l.f0 + (1.0 - l.f0) * w : 1.0));
+    for (const NganLobe& l : model.lobes)
+      rho += l.scale * (nganLobe(l, wo, wi) * (nganHasFresnel(l.family) ? l.f0 + (1.0 - l.f0) * w : 1.0));
     return rho;
   };
 }
@@ -79,7 +82,8 @@ NganModel parseNganModel(const std::string& text, const std::string& where, std:
     const auto number = [&](const std::string& key, double least, double most) {
       if (!values.contains(key)) throw inputError(place, name + " has no " + key, "write such as " + key + "=0.2");
       const double value = csvNumber(values[key], where, line);
-      if (!(value >= least && value <= most)) throw inputError(place, name + " has " + key + "=" + values[key], "keep it in range");
+      if (!(value >= least && value <= most))
+        throw inputError(place, name + " has " + key + "=" + values[key], "keep it in range");
       return value;
     };
     if (!values.contains("scale")) throw inputError(place, "\"" + name + "\" has no scale", "write scale=(r,g,b)");
@@ -89,9 +93,12 @@ NganModel parseNganModel(const std::string& text, const std::string& where, std:
       continue;
     }
     const auto* known = std::find(std::begin(kNames), std::end(kNames), name);
-    if (known == std::end(kNames)) throw inputError(place, "the lobe \"" + name + "\" is not known", "use Ward, WardDuer, BlinnPhong, LafortuneIso, CookTorrance or AshikhminShirley");
+    if (known == std::end(kNames))
+      throw inputError(place, "the lobe \"" + name + "\" is not known",
+                       "use Ward, WardDuer, BlinnPhong, LafortuneIso, CookTorrance or AshikhminShirley");
     NganLobe lobe{.family = static_cast<NganFamily>(known - std::begin(kNames)), .scale = scale};
-    lobe.width = nganHasExponent(lobe.family) ? number("Exponent", 1e-3, 1e7) : number(lobe.family == NganFamily::cookTorrance ? "m" : "ax", 1e-5, 10.0);
+    lobe.width = nganHasExponent(lobe.family) ? number("Exponent", 1e-3, 1e7)
+                                              : number(lobe.family == NganFamily::cookTorrance ? "m" : "ax", 1e-5, 10.0);
     if (nganHasFresnel(lobe.family)) lobe.f0 = number("F0", 0.0, 1.0);
     if (lobe.family == NganFamily::lafortune) lobe.cxy = number("Cxy", -10.0, 10.0), lobe.cz = number("Cz", -10.0, 10.0);
     model.lobes.push_back(lobe);

@@ -1,6 +1,7 @@
 #pragma once
-/// The analytic models that Ngan, Durand and Matusik fitted to the MERL materials (Experimental Analysis of BRDF Models, 2005), as their parameters are tabulated: a Lambertian part
-/// scale / pi and lobes scale S, with c = n.wh, F = F0 + (1 - F0) (1 - wo.wh)^5, G the groove masking:
+/// The analytic models that Ngan, Durand and Matusik fitted to the MERL materials (Experimental Analysis of BRDF Models, 2005), as their
+/// parameters are tabulated: a Lambertian part scale / pi and lobes scale S, with c = n.wh, F = F0 + (1 - F0) (1 - wo.wh)^5, G the groove
+/// masking:
 ///   Ward            e^(-tan^2 / ax^2) / (4 pi ax^2 sqrt((n.wi) (n.wo)))       (Ward 1992)
 ///   WardDuer        the same over (n.wi) (n.wo)                               (Duer 2004)
 ///   BlinnPhong      (Exponent + 2) / (2 pi) c^Exponent
@@ -29,7 +30,9 @@ struct NganLobe {
 
 /// The lobe with scale 1, without F; both directions above the surface, else 0.
 double nganLobe(const NganLobe& lobe, const lobe64::Vec3& wo, const lobe64::Vec3& wi);
-inline bool nganHasFresnel(NganFamily family) { return family == NganFamily::cookTorrance || family == NganFamily::ashikhminShirley; }
+inline bool nganHasFresnel(NganFamily family) {
+  return family == NganFamily::cookTorrance || family == NganFamily::ashikhminShirley;
+}
 inline bool nganHasExponent(NganFamily family) {
   return family == NganFamily::blinnPhong || family == NganFamily::lafortune || family == NganFamily::ashikhminShirley;
 }

@@ -19,7 +19,8 @@ double lobeSum(const NdfMixture& mixture, const Vec3& wo, const Vec3& wi, LobeWa
       sum += lobe64::sgEvaluate(lobe, lobe64::halfVector(wo, wi));
       continue;
     }
-    const int way = warp == LobeWarp::isotropic ? lobe64::kWarpIsotropic : lobe64::warpChoice(lobe.sharpness, lobe64::warpCosine(wo, lobe.axis), true);
+    const int way = warp == LobeWarp::isotropic ? lobe64::kWarpIsotropic
+                                                : lobe64::warpChoice(lobe.sharpness, lobe64::warpCosine(wo, lobe.axis), true);
     const int count = lobe64::warpLobeCount(way);
     for (int k = 0; k < count; ++k) sum += lobe64::sgEvaluate(lobe64::sgWarpLobe(lobe, wo, count, k), wi);
   }
@@ -31,7 +32,8 @@ double lobeSum(const NdfMixture& mixture, const Vec3& wo, const Vec3& wi, LobeWa
 double reconstructionError(const std::vector<FitSample>& samples, const Reflectance& reconstruction) {
   double error2 = 0.0, norm2 = 0.0;
   for (const FitSample& s : samples) {
-    const double truth = luminance(s.rho) * s.wi.z * s.wo.z, difference = luminance(reconstruction(s.wo, s.wi)) * s.wi.z * s.wo.z - truth;
+    const double truth = luminance(s.rho) * s.wi.z * s.wo.z,
+                 difference = luminance(reconstruction(s.wo, s.wi)) * s.wi.z * s.wo.z - truth;
     error2 += s.weight * difference * difference;
     norm2 += s.weight * truth * truth;
   }
@@ -40,10 +42,12 @@ double reconstructionError(const std::vector<FitSample>& samples, const Reflecta
 
 Reflectance mixtureReflectance(int kind, const MaterialFit& fit, const NdfMixture& mixture, LobeWarp warp) {
   const auto model = modelOf(kind, fit.width);
-  FitFamily family{.name = modelJsonName(kind),
-                   .fresnel = FitFamily::Fresnel::schlick,
-                   .lobe = [=](double, const Vec3& wo, const Vec3& wi) { return lobeSum(mixture, wo, wi, warp) * lobe64::smoothTimesCosine(model, wo, wi) / wi.z; },
-                   .published = {}};
+  FitFamily family{
+      .name = modelJsonName(kind),
+      .fresnel = FitFamily::Fresnel::schlick,
+      .lobe = [=](double, const Vec3& wo,
+                  const Vec3& wi) { return lobeSum(mixture, wo, wi, warp) * lobe64::smoothTimesCosine(model, wo, wi) / wi.z; },
+      .published = {}};
   MaterialFit one = fit;
   one.share = 0.0;
   return fittedReflectance(family, one);

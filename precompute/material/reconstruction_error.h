@@ -20,8 +20,8 @@ enum class LobeWarp {
   chosen,     ///< by warp_choice.glsl, round lobes only
 };
 
-/// A fitted material with the mixture in place of its distribution; smooth factor, Fresnel and the diffuse part stay as they are. The family is one of modelFamily.
-/// `mixture`: of the distribution with peak 1.
+/// A fitted material with the mixture in place of its distribution; smooth factor, Fresnel and the diffuse part stay as they are. The family is
+/// one of modelFamily. `mixture`: of the distribution with peak 1.
 Reflectance mixtureReflectance(int kind, const MaterialFit& fit, const NdfMixture& mixture, LobeWarp warp);
 
 /// The distribution of a fit's lobes by angle, peak 1 at the normal, as ndf.glsl has it.

@@ -29,7 +29,8 @@ Reflectance sgdReflectance(const std::array<SgdChannel, 3>& channels) {
   return [channels](const Vec3& wo, const Vec3& wi) {
     if (!(wo.z > 0.0) || !(wi.z > 0.0)) return Vec3(0.0);
     const Vec3 wh = lobe64::halfVector(wo, wi);
-    const double cos2 = std::max(wh.z * wh.z, 1e-12), tan2 = (wh.x * wh.x + wh.y * wh.y) / cos2, cosDiff = std::min(dot(wo, wh), 1.0);
+    const double cos2 = std::max(wh.z * wh.z, 1e-12), tan2 = (wh.x * wh.x + wh.y * wh.y) / cos2,
+                 cosDiff = std::min(dot(wo, wh), 1.0);
     Vec3 rho(0.0);
     for (int c = 0; c < 3; ++c) rho[c] = channel(channels[static_cast<std::size_t>(c)], wo.z, wi.z, tan2, cos2, cosDiff);
     return rho;

@@ -25,7 +25,8 @@ std::vector<std::uint8_t> unpackedXz(std::span<const std::uint8_t> stream, std::
   const bool full = result == LZMA_OK && decoder.avail_out == 0;
   if (result == LZMA_MEM_ERROR) throw std::bad_alloc();
   if (result == LZMA_FORMAT_ERROR) throw inputError(where, "is no .xz file", "name it by what it is");
-  if (result == LZMA_MEMLIMIT_ERROR) throw inputError(where, "needs more than 256 MiB to unpack", "unpack it with xz -d, or pack it with xz -6");
+  if (result == LZMA_MEMLIMIT_ERROR)
+    throw inputError(where, "needs more than 256 MiB to unpack", "unpack it with xz -d, or pack it with xz -6");
   if (result == LZMA_BUF_ERROR || (result == LZMA_OK && !full)) throw inputError(where, "is cut short", "copy it again");
   if (result != LZMA_STREAM_END && !full) throw inputError(where, "is damaged", "copy it again");
   bytes.resize(bytes.size() - decoder.avail_out);

@@ -42,7 +42,9 @@ void expectError(Scene scene, const std::string& name, const std::string& file, 
 }
 
 TEST(ReplaceMaterial, FactorsComeFromTheFileAndReliefStays) {
-  const auto file = write("gold.gltf", R"(,"materials":[{"name":"gold","pbrMetallicRoughness":{"baseColorFactor":[0.1,0.2,0.3,1],"metallicFactor":0,"roughnessFactor":0.25}}])");
+  const auto file = write(
+      "gold.gltf",
+      R"(,"materials":[{"name":"gold","pbrMetallicRoughness":{"baseColorFactor":[0.1,0.2,0.3,1],"metallicFactor":0,"roughnessFactor":0.25}}])");
   Scene scene = twoMaterials();
   replaceMaterial(scene, "brass", file);
   const Material& brass = scene.materials[1];
@@ -66,9 +68,12 @@ TEST(ReplaceMaterial, RefusesWhatIsWrong) {
   expectError(twoMaterials(), "wood", "nothing.gltf", ExitCode::unreadableInput, "nothing.gltf");
   const std::string pixel =
       "data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAQAAAC1HAwCAAAAC0lEQVR42mNk+A8AAQUBAScY42YAAAAASUVORK5CYII=";
-  expectError(twoMaterials(), "wood",
-              write("textured.gltf", R"(,"images":[{"uri":")" + pixel + R"("}],"textures":[{"source":0}],"materials":[{"pbrMetallicRoughness":{"baseColorTexture":{"index":0}}}])"),
-              ExitCode::unreadableInput, "has textures");
+  expectError(
+      twoMaterials(), "wood",
+      write("textured.gltf",
+            R"(,"images":[{"uri":")" + pixel +
+                R"("}],"textures":[{"source":0}],"materials":[{"pbrMetallicRoughness":{"baseColorTexture":{"index":0}}}])"),
+      ExitCode::unreadableInput, "has textures");
 }
 
 }  // namespace

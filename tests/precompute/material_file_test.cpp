@@ -25,7 +25,9 @@ using testing::HasSubstr;
 
 std::vector<std::uint8_t> bytesOf(const std::string& text) { return {text.begin(), text.end()}; }
 
-Vec3 direction(double theta, double phi) { return Vec3(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)); }
+Vec3 direction(double theta, double phi) {
+  return Vec3(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta));
+}
 
 template <typename Work>
 void expectInputError(const Work& work, const std::string& about, ExitCode code = ExitCode::unreadableInput) {
@@ -41,7 +43,9 @@ void expectInputError(const Work& work, const std::string& about, ExitCode code 
 std::vector<std::uint8_t> packed(const std::vector<std::uint8_t>& bytes) {
   std::vector<std::uint8_t> stream(lzma_stream_buffer_bound(bytes.size()));
   std::size_t size = 0;
-  EXPECT_EQ(lzma_easy_buffer_encode(1, LZMA_CHECK_CRC64, nullptr, bytes.data(), bytes.size(), stream.data(), &size, stream.size()), LZMA_OK);
+  EXPECT_EQ(
+      lzma_easy_buffer_encode(1, LZMA_CHECK_CRC64, nullptr, bytes.data(), bytes.size(), stream.data(), &size, stream.size()),
+      LZMA_OK);
   stream.resize(size);
   return stream;
 }
@@ -150,7 +154,8 @@ TEST(MerlFile, Xz) {
   const MerlTable table = readMerlFile("smooth.binary.xz");
   EXPECT_EQ(table.bin(40, 20, 100).x, readMerl(smoothFile(), "").bin(40, 20, 100).x);
   EXPECT_EQ(readMaterials("smooth.binary.xz")[0].name, "smooth");
-  writeFileAtomically("cut.binary.xz", std::vector<std::uint8_t>(stream.begin(), stream.begin() + static_cast<std::ptrdiff_t>(stream.size() / 2)));
+  writeFileAtomically("cut.binary.xz",
+                      std::vector<std::uint8_t>(stream.begin(), stream.begin() + static_cast<std::ptrdiff_t>(stream.size() / 2)));
   expectInputError([] { readMerlFile("cut.binary.xz"); }, "cut short");
   auto damaged = stream;
   damaged[damaged.size() / 2] ^= 0x55;
@@ -160,7 +165,8 @@ TEST(MerlFile, Xz) {
   expectInputError([] { readMerlFile("plain.binary.xz"); }, "no .xz file");
   writeFileAtomically("small.binary.xz", packed({1, 2, 3}));
   expectInputError([] { readMerlFile("small.binary.xz"); }, "cut short");
-  EXPECT_EQ(unpackedXz(packed(std::vector<std::uint8_t>(1000, 7)), 10, "").size(), 11u);  // a little more than was wanted, never all
+  EXPECT_EQ(unpackedXz(packed(std::vector<std::uint8_t>(1000, 7)), 10, "").size(),
+            11u);  // a little more than was wanted, never all
 }
 
 TEST(Csv, RowsAndNumbers) {
@@ -169,7 +175,8 @@ TEST(Csv, RowsAndNumbers) {
   EXPECT_EQ(rows[1].line, 3u);
   EXPECT_EQ(rows[1].fields, (std::vector<std::string>{"x, \"y\"", "2"}));
   EXPECT_EQ(csvNumber(" 2.43e+004 ", "t", 1), 24300.0);
-  for (const char* bad : {"", "  ", "nan", "inf", "1e999", "1.0x", "0x10", "--1"}) expectInputError([&] { csvNumber(bad, "t.csv", 7); }, "t.csv:7");
+  for (const char* bad : {"", "  ", "nan", "inf", "1e999", "1.0x", "0x10", "--1"})
+    expectInputError([&] { csvNumber(bad, "t.csv", 7); }, "t.csv:7");
   expectInputError([] { readCsv(bytesOf("a,\"b\n"), "t.csv"); }, "t.csv:1: a quote is not closed");
   expectInputError([] { readCsv(bytesOf("\n \n"), "t.csv"); }, "no rows");
   expectInputError([] { readCsv({std::vector<std::uint8_t>{65, 0, 66}}, "t.csv"); }, "zero byte");
@@ -181,7 +188,9 @@ TEST(NdfTable, ReadsAndRefuses) {
   EXPECT_EQ(table.at(0.0), 2.0);
   EXPECT_EQ(table.at(1.0), 0.0);
   EXPECT_EQ(table.peak(), 2.0);
-  const auto refused = [](const std::string& text, const std::string& about) { expectInputError([&] { readNdfTable(bytesOf(text), "n.csv"); }, about); };
+  const auto refused = [](const std::string& text, const std::string& about) {
+    expectInputError([&] { readNdfTable(bytesOf(text), "n.csv"); }, about);
+  };
   refused("0,1\n10,2\n", "2 rows of numbers");
   refused("0,1\n10,1,1\n20,1\n", "n.csv:2: has 3 fields");
   refused("0,1\n20,1\n20,1\n", "n.csv:3: the angle 20 is not above");
@@ -211,13 +220,15 @@ TEST(AbcModel, FormulaReciprocityAndHorizon) {
   const Vec3 wo = direction(.5, .1), wi = direction(1.1, 2.0);
   EXPECT_LE(glm::length(rho(wo, wi) - rho(wi, wo)), 1e-12);
   const Vec3 wh = lobe64::halfVector(wo, wi);
-  const double d = 5 / std::pow(1 + 100 * (1 - wh.z), 1.2), g = std::min({1.0, 2 * wh.z * wo.z / dot(wo, wh), 2 * wh.z * wi.z / dot(wo, wh)});
+  const double d = 5 / std::pow(1 + 100 * (1 - wh.z), 1.2),
+               g = std::min({1.0, 2 * wh.z * wo.z / dot(wo, wh), 2 * wh.z * wi.z / dot(wo, wh)});
   EXPECT_LE(std::abs(rho(wo, wi).x - (.3 + dielectricFresnel(dot(wo, wh), 1.5) * g * d / (wo.z * wi.z)) / lobe64::kPi), 1e-12);
   EXPECT_EQ(rho(wo, -wi), Vec3(0.0));
 }
 
 TEST(SgdModel, FormulaAndExtremes) {
-  const SgdChannel c{.rhoD = .1, .rhoS = .5, .alpha = .2, .p = .7, .f0 = .3, .f1 = .05, .kap = 4, .lambda = 3, .c = .01, .k = 8, .theta0 = .2};
+  const SgdChannel c{
+      .rhoD = .1, .rhoS = .5, .alpha = .2, .p = .7, .f0 = .3, .f1 = .05, .kap = 4, .lambda = 3, .c = .01, .k = 8, .theta0 = .2};
   const auto rho = sgdReflectance({c, c, c});
   const double d = 4 * std::exp(-.2) / (lobe64::kPi * std::pow(.2, .7));
   EXPECT_LE(std::abs(rho(Vec3(0, 0, 1), Vec3(0, 0, 1)).x - (.1 + .5 * (.3 - .05) * d) / lobe64::kPi), 1e-12);
@@ -228,25 +239,46 @@ TEST(SgdModel, FormulaAndExtremes) {
     for (const double k : {855.0, 6.7})
       for (const double theta0 : {-.6, 1.2})
         for (const double angle : {0.0, .3, 1.5, 1.5707963}) {
-          const SgdChannel e{.rhoD = 0, .rhoS = .1, .alpha = 2e-5, .p = 1e-12, .f0 = 0, .f1 = -1, .kap = 6e4, .lambda = 9e6, .c = cc, .k = k, .theta0 = theta0};
+          const SgdChannel e{.rhoD = 0,
+                             .rhoS = .1,
+                             .alpha = 2e-5,
+                             .p = 1e-12,
+                             .f0 = 0,
+                             .f1 = -1,
+                             .kap = 6e4,
+                             .lambda = 9e6,
+                             .c = cc,
+                             .k = k,
+                             .theta0 = theta0};
           const Vec3 value = sgdReflectance({e, e, e})(direction(angle, 0), direction(angle, lobe64::kPi));
-          EXPECT_TRUE(value.x >= 0.0 && std::isfinite(value.x)) << cc << ' ' << k << ' ' << theta0 << ' ' << angle << ' ' << value.x;
+          EXPECT_TRUE(value.x >= 0.0 && std::isfinite(value.x))
+              << cc << ' ' << k << ' ' << theta0 << ' ' << angle << ' ' << value.x;
         }
 }
 
 // Each family beside the project's own model of the same shape, which is tested elsewhere.
 TEST(NganModel, LobesBesideOurModels) {
   const Vec3 wo = direction(.4, .1), wi = direction(.7, 2.8);
-  const auto ours = [&](int kind, double x) { return lobe64::modelTimesCosine(lobe64::reflectanceModel(kind, x, x), wo, wi) / wi.z; };
+  const auto ours = [&](int kind, double x) {
+    return lobe64::modelTimesCosine(lobe64::reflectanceModel(kind, x, x), wo, wi) / wi.z;
+  };
   EXPECT_LE(std::abs(nganLobe({.family = NganFamily::ward, .width = .3}, wo, wi) / ours(lobe64::kWard, .3) - 1), 1e-12);
-  EXPECT_LE(std::abs(nganLobe({.family = NganFamily::ashikhminShirley, .width = 30}, wo, wi) / ours(lobe64::kAshikhminShirley, 30) - 1), 1e-12);
-  EXPECT_LE(std::abs(nganLobe({.family = NganFamily::wardDuer, .width = .3}, wo, wi) * std::sqrt(wo.z * wi.z) / ours(lobe64::kWard, .3) - 1), 1e-12);
+  EXPECT_LE(
+      std::abs(nganLobe({.family = NganFamily::ashikhminShirley, .width = 30}, wo, wi) / ours(lobe64::kAshikhminShirley, 30) - 1),
+      1e-12);
+  EXPECT_LE(
+      std::abs(
+          nganLobe({.family = NganFamily::wardDuer, .width = .3}, wo, wi) * std::sqrt(wo.z * wi.z) / ours(lobe64::kWard, .3) - 1),
+      1e-12);
   const Vec3 wh = lobe64::halfVector(wo, wi);
-  EXPECT_LE(std::abs(nganLobe({.family = NganFamily::blinnPhong, .width = 30}, wo, wi) - 32 / lobe64::kTwoPi * std::pow(wh.z, 30)), 1e-12);
+  EXPECT_LE(
+      std::abs(nganLobe({.family = NganFamily::blinnPhong, .width = 30}, wo, wi) - 32 / lobe64::kTwoPi * std::pow(wh.z, 30)),
+      1e-12);
   const double tan2 = 1 / (wh.z * wh.z) - 1;
-  EXPECT_LE(std::abs(nganLobe({.family = NganFamily::cookTorrance, .width = .3}, wo, wi) -
-                     grooveMasking(wo, wi, wh) * std::exp(-tan2 / .09) / (lobe64::kFourPi * .09 * std::pow(wh.z, 4) * wo.z * wi.z)),
-            1e-12);
+  EXPECT_LE(
+      std::abs(nganLobe({.family = NganFamily::cookTorrance, .width = .3}, wo, wi) -
+               grooveMasking(wo, wi, wh) * std::exp(-tan2 / .09) / (lobe64::kFourPi * .09 * std::pow(wh.z, 4) * wo.z * wi.z)),
+      1e-12);
   // Lafortune's lobe is 1 for the mirror direction with these coefficients.
   const Vec3 mirror(-wo.x, -wo.y, wo.z);
   EXPECT_LE(std::abs(nganLobe({.family = NganFamily::lafortune, .width = 50, .cxy = -1, .cz = 1}, wo, mirror) - 1), 1e-12);
@@ -254,7 +286,10 @@ TEST(NganModel, LobesBesideOurModels) {
 }
 
 TEST(MaterialFile, TablesByTheirColumns) {
-  writeFileAtomically("abc.csv", std::string_view("material,kD_r,kD_g,kD_b,A_r,A_g,A_b,B,C,ior\nred,.5,.1,.1,1,1,1,20,1.5,1.4\nblue,.1,.1,.5,1,1,1,20,1.5,1.4\n"));
+  writeFileAtomically(
+      "abc.csv",
+      std::string_view(
+          "material,kD_r,kD_g,kD_b,A_r,A_g,A_b,B,C,ior\nred,.5,.1,.1,1,1,1,20,1.5,1.4\nblue,.1,.1,.5,1,1,1,20,1.5,1.4\n"));
   const auto abc = readMaterials("abc.csv");
   ASSERT_EQ(abc.size(), 2u);
   EXPECT_EQ(abc[1].name, "blue");
@@ -270,7 +305,9 @@ TEST(MaterialFile, TablesByTheirColumns) {
   writeFileAtomically("sgd.csv", names + "\n" + values + "\n");
   EXPECT_EQ(readMaterial("sgd.csv", "").form, MaterialForm::sgd);
 
-  const std::string lobes = "\"Lambertian scale=(0.1,0.2,0.3)  | CookTorrance scale=(1e-1,2.43e+004,0) m=0.2 F0=0.1 | LafortuneIso scale=(1,1,1) Cxy=-0.6 Cz=0.5 Exponent=14.1\"";
+  const std::string lobes =
+      "\"Lambertian scale=(0.1,0.2,0.3)  | CookTorrance scale=(1e-1,2.43e+004,0) m=0.2 F0=0.1 | LafortuneIso scale=(1,1,1) "
+      "Cxy=-0.6 Cz=0.5 Exponent=14.1\"";
   writeFileAtomically("ngan.csv", "material,fit,error,lobes\nA,Ngan-CookTorrance,0.1," + lobes + "\n");
   const auto ngan = readMaterial("ngan.csv", "A/Ngan-CookTorrance");
   ASSERT_TRUE(ngan.ngan.has_value());

@@ -161,7 +161,9 @@ TEST(MaterialFit, TooFewValuesAreRefused) {
 // ---- distributions -----------------------------------------------------------------------------------------------------------------------
 
 TEST(NdfMixtureFit, KnownLobesComeBack) {
-  const auto two = [](double angle) { return 3.0 * (.7 * std::exp(-200 * (1 - std::cos(angle))) + .3 * std::exp(-10 * (1 - std::cos(angle)))); };
+  const auto two = [](double angle) {
+    return 3.0 * (.7 * std::exp(-200 * (1 - std::cos(angle))) + .3 * std::exp(-10 * (1 - std::cos(angle))));
+  };
   const NdfMixture mixture = fitNdfMixture(two, 2);
   EXPECT_LE(mixture.error, 1e-4);
   EXPECT_LE(std::abs(mixture.lobes[0].sharpness / 200 - 1), .01);
@@ -169,8 +171,8 @@ TEST(NdfMixtureFit, KnownLobesComeBack) {
   EXPECT_LE(std::abs(mixture.lobes[0].amplitude / 2.1 - 1), .01);
 }
 
-// ALGORITHMS 2.2: GGX takes .140, .042, .014, .0053 with 1..4 lobes for sharp widths, at most .201, .056, .017, .0083 for any. At .002 the sharpest lobe
-// stops at 1e6, as everywhere.
+// ALGORITHMS 2.2: GGX takes .140, .042, .014, .0053 with 1..4 lobes for sharp widths, at most .201, .056, .017, .0083 for any. At .002 the
+// sharpest lobe stops at 1e6, as everywhere.
 TEST(NdfMixtureFit, GgxByTheNumberOfLobes) {
   const double most[] = {.201, .056, .017, .0083};
   for (const double width : {.002, .004, .05, .3, .7}) {
@@ -203,13 +205,15 @@ TEST(ReconstructionErrors, OfThePlainAndOfNothing) {
   const auto samples = samplesOf(truth);
   EXPECT_LE(reconstructionError(samples, truth), 1e-20);
   EXPECT_LE(std::abs(reconstructionError(samples, [](const Vec3&, const Vec3&) { return Vec3(0.0); }) - 1.0), 1e-12);
-  EXPECT_LE(std::abs(reconstructionError(samples, [&](const Vec3& wo, const Vec3& wi) { return 1.1 * truth(wo, wi); }) - .01), 1e-9);
+  EXPECT_LE(std::abs(reconstructionError(samples, [&](const Vec3& wo, const Vec3& wi) { return 1.1 * truth(wo, wi); }) - .01),
+            1e-9);
 }
 
 // ALGORITHMS 2.4: a single Cook-Torrance lobe costs 2e-5 at m = .3 and its isotropic warp .083, over all views; here up to 80 degrees.
 TEST(ReconstructionErrors, OfTheMixtureAndItsWarps) {
   const MaterialFit fit = known(.3, Vec3(0.0), Vec3(1.0));
-  const auto samples = fitSamples(fittedReflectance(modelFamily(kCookTorrance), fit), kWidestMeasured, {.thetaDiff = 45, .phiDiff = 36}, "");
+  const auto samples =
+      fitSamples(fittedReflectance(modelFamily(kCookTorrance), fit), kWidestMeasured, {.thetaDiff = 45, .phiDiff = 36}, "");
   const NdfMixture mixture = fitNdfMixture(fittedNdf(kCookTorrance, .3), 1);
   const double none = reconstructionError(samples, mixtureReflectance(kCookTorrance, fit, mixture, LobeWarp::none));
   const double isotropic = reconstructionError(samples, mixtureReflectance(kCookTorrance, fit, mixture, LobeWarp::isotropic));
@@ -222,7 +226,11 @@ TEST(ReconstructionErrors, OfTheMixtureAndItsWarps) {
 
 TEST(MaterialStudies, TheRightModelIsChosen) {
   for (const int kind : {kGgx, kBeckmann, kWard}) {
-    MaterialData data{.name = "x", .form = MaterialForm::abc, .reflectance = fittedReflectance(modelFamily(kind), known(.25, Vec3(.2), Vec3(.1))), .ndf = {}, .ngan = {}};
+    MaterialData data{.name = "x",
+                      .form = MaterialForm::abc,
+                      .reflectance = fittedReflectance(modelFamily(kind), known(.25, Vec3(.2), Vec3(.1))),
+                      .ndf = {},
+                      .ngan = {}};
     const MaterialStudy study = studyMaterial(data, {.models = kModels, .lobes = 3, .fit = {}, .grid = {}, .threads = 2});
     EXPECT_EQ(study.chosen().kind, kind);
     EXPECT_LE(study.chosen().error, 1e-6);
@@ -233,7 +241,8 @@ TEST(MaterialStudies, TheRightModelIsChosen) {
 // All light, all of it given back: a white Lambertian sphere under white shows 1 everywhere.
 TEST(SpherePicture, WhiteFurnace) {
   const auto white = [](const Vec3&, const Vec3&) { return Vec3(1.0 / kPi); };
-  const ImageRgba picture = spherePicture({white, white}, loadEnvironment("white"), {.size = 24, .samples = 64, .width = .3, .threads = 2});
+  const ImageRgba picture =
+      spherePicture({white, white}, loadEnvironment("white"), {.size = 24, .samples = 64, .width = .3, .threads = 2});
   ASSERT_EQ(picture.width, 48);
   int seen = 0;
   for (int y = 0; y < 24; ++y)

@@ -41,7 +41,10 @@ const char* ggxFile() {
 }
 
 const char* tableFile() {
-  writeFileAtomically("table.csv", std::string_view("material,kD_r,kD_g,kD_b,A_r,A_g,A_b,B,C,ior\nred,.5,.1,.1,5,5,5,40,1.6,1.4\nblue,.1,.1,.5,9,9,9,120,1.5,1.6\n"));
+  writeFileAtomically(
+      "table.csv",
+      std::string_view(
+          "material,kD_r,kD_g,kD_b,A_r,A_g,A_b,B,C,ior\nred,.5,.1,.1,5,5,5,40,1.6,1.4\nblue,.1,.1,.5,9,9,9,120,1.5,1.6\n"));
   return "table.csv";
 }
 
@@ -107,7 +110,8 @@ TEST(MaterialProgram, TableRowsAndF90) {
   EXPECT_LE(std::abs(json["models"][0]["f0"][0].get<double>() - f0), 1e-9);
   EXPECT_EQ(json["models"][0]["lobes"].size(), 2u);
 
-  const Finished one = material({tableFile(), "--row", "blue", "--model", "beckmann", "--f90", "1", "--metric", "cosine", "-o", "blue1.gltf"});
+  const Finished one =
+      material({tableFile(), "--row", "blue", "--model", "beckmann", "--f90", "1", "--metric", "cosine", "-o", "blue1.gltf"});
   ASSERT_EQ(one.code, 0) << one.err;
   EXPECT_TRUE(jsonOf("blue1.gltf")["materials"][0]["extensions"]["CHIARO_materials_reflectance"].contains("specularColor"));
   EXPECT_EQ(jsonOf("blue1.json")["metric"], "cosine");
@@ -119,7 +123,8 @@ TEST(MaterialProgram, TableRowsAndF90) {
 
 TEST(MaterialProgram, Distribution) {
   std::string text = "degrees,value\n";
-  for (int i = 0; i <= 90; ++i) text += std::to_string(i) + "," + std::to_string(7 * std::pow(std::cos(i * lobe64::kPi / 180), 40)) + "\n";
+  for (int i = 0; i <= 90; ++i)
+    text += std::to_string(i) + "," + std::to_string(7 * std::pow(std::cos(i * lobe64::kPi / 180), 40)) + "\n";
   writeFileAtomically("facets.csv", text);
   const Finished run = material({"facets.csv", "--lobes", "1", "-o", "facets.gltf"});
   ASSERT_EQ(run.code, 0) << run.err;
@@ -135,7 +140,8 @@ TEST(MaterialProgram, Distribution) {
 
 TEST(MaterialProgram, GoesOntoASceneWhenItIsBaked) {
   ASSERT_EQ(material({ggxFile(), "--model", "ggx", "-o", "onto.gltf"}).code, 0);
-  const std::vector<std::string> bake{"builtin:sphere", "-o", "onto.glb", "--resolution", "16", "--terms", "8", "--directions", "8"};
+  const std::vector<std::string> bake{"builtin:sphere", "-o", "onto.glb", "--resolution", "16", "--terms", "8",
+                                      "--directions",   "8"};
   const auto with = [&](const std::string& material) {
     auto arguments = bake;
     arguments.insert(arguments.end(), {"--material", material});
@@ -158,7 +164,8 @@ TEST(MaterialProgram, GoesOntoASceneWhenItIsBaked) {
 TEST(MaterialProgram, TheSameWhateverTheThreads) {
   ASSERT_EQ(material({tableFile(), "--row", "red", "-o", "a.gltf", "--threads", "1"}).code, 0);
   ASSERT_EQ(material({tableFile(), "--row", "red", "-o", "b.gltf", "--threads", "3"}).code, 0);
-  for (const char* ending : {".gltf", ".json", ".svg", ".png"}) EXPECT_EQ(readFile(std::string("a") + ending), readFile(std::string("b") + ending)) << ending;
+  for (const char* ending : {".gltf", ".json", ".svg", ".png"})
+    EXPECT_EQ(readFile(std::string("a") + ending), readFile(std::string("b") + ending)) << ending;
 }
 
 TEST(MaterialProgram, WrongUsageIsOneLineAndTwo) {
@@ -186,8 +193,10 @@ TEST(MaterialProgram, BadFilesAreOneLineAndThreeOrFour) {
   writeFileAtomically("short.binary", std::string_view("\x5a\0\0\0", 4));
   expectOneLine(material({"short.binary", "-o", "x.gltf"}), ExitCode::unreadableInput, "short.binary: is cut short");
   expectOneLine(material({"nothing.binary", "-o", "x.gltf"}), ExitCode::unreadableInput, "nothing.binary");
-  expectOneLine(material({tableFile(), "--row", "red", "-o", "x.gltf", "-e", "nowhere.hdr"}), ExitCode::unreadableInput, "nowhere.hdr");
-  expectOneLine(material({tableFile(), "--row", "red", "-o", "no/folder/x.gltf"}), ExitCode::unwritableOutput, "no/folder/x.gltf");
+  expectOneLine(material({tableFile(), "--row", "red", "-o", "x.gltf", "-e", "nowhere.hdr"}), ExitCode::unreadableInput,
+                "nowhere.hdr");
+  expectOneLine(material({tableFile(), "--row", "red", "-o", "no/folder/x.gltf"}), ExitCode::unwritableOutput,
+                "no/folder/x.gltf");
   EXPECT_FALSE(std::filesystem::exists("x.gltf"));
 }
 
@@ -208,9 +217,12 @@ TEST(MeasuredReport, FilesOfAFolder) {
 
 // A model as data: its nine lobes cost what they cost against the model, and Ngan's own parameters come back from their own reflectance.
 TEST(MeasuredReport, KnownMaterials) {
-  writeFileAtomically("ngan.csv", std::string_view("material,fit,error,lobes\n"
-                                                   "MERL-known,Ngan-Ward,0.1,\"Lambertian scale=(0.1,0.2,0.3)  | Ward scale=(0.2,0.2,0.2) ax=0.2\"\n"
-                                                   "MERL-known,Ngan-CookTorrance,0.1,\"Lambertian scale=(0.1,0.2,0.3)  | CookTorrance scale=(0.3,0.3,0.3) m=0.2 F0=0.2\"\n"));
+  writeFileAtomically(
+      "ngan.csv",
+      std::string_view("material,fit,error,lobes\n"
+                       "MERL-known,Ngan-Ward,0.1,\"Lambertian scale=(0.1,0.2,0.3)  | Ward scale=(0.2,0.2,0.2) ax=0.2\"\n"
+                       "MERL-known,Ngan-CookTorrance,0.1,\"Lambertian scale=(0.1,0.2,0.3)  | CookTorrance scale=(0.3,0.3,0.3) "
+                       "m=0.2 F0=0.2\"\n"));
   const MeasuredStudy study = studyMeasured({ggxFile(), "ngan.csv"}, true, 2, [](const std::string&, double) {});
   ASSERT_EQ(study.materials.size(), 3u);
   const MeasuredMaterial& known = study.materials[0];
@@ -233,7 +245,8 @@ TEST(MeasuredReport, KnownMaterials) {
 TEST(MeasuredReport, FactorisationOfValuesIsThatOfTheModel) {
   const auto model = lobe64::reflectanceModel(lobe64::kGgx, .4, .4);
   const auto value = [&](const lobe64::Vec3& wo, const lobe64::Vec3& wi) { return lobe64::modelTimesCosine(model, wo, wi); };
-  const auto a = factorisationErrors(model, lobe64::kHalfPi, 24, 48, {4, 16}), b = factorisationErrors(RoundReflectance(value), lobe64::kHalfPi, 24, 48, {4, 16});
+  const auto a = factorisationErrors(model, lobe64::kHalfPi, 24, 48, {4, 16}),
+             b = factorisationErrors(RoundReflectance(value), lobe64::kHalfPi, 24, 48, {4, 16});
   for (std::size_t k = 0; k < 2; ++k) EXPECT_EQ(a[k], b[k]);
 }
 

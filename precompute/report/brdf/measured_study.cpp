@@ -52,7 +52,8 @@ FitFamily nganFamily(NganFamily family) {
   const auto parameter = [family](double width) { return nganHasExponent(family) ? 2.0 / (width * width) - 1.0 : width; };
   return {.name = nganName(family),
           .fresnel = nganHasFresnel(family) ? FitFamily::Fresnel::scaled : FitFamily::Fresnel::none,
-          .lobe = [family, parameter](double width, const Vec3& wo, const Vec3& wi) { return nganLobe({.family = family, .width = parameter(width)}, wo, wi); },
+          .lobe = [family, parameter](double width, const Vec3& wo,
+                                      const Vec3& wi) { return nganLobe({.family = family, .width = parameter(width)}, wo, wi); },
           .published = parameter};
 }
 
@@ -66,7 +67,8 @@ double cosineError(const std::vector<FitSample>& samples, const Reflectance& ref
   return std::sqrt(sum);
 }
 
-NganRefit refit(const std::string& material, const MaterialData& published, const MaterialData& source, const std::vector<FitSample>& samples) {
+NganRefit refit(const std::string& material, const MaterialData& published, const MaterialData& source,
+                const std::vector<FitSample>& samples) {
   const NganLobe& lobe = published.ngan->lobes.front();
   const FitFamily family = nganFamily(lobe.family);
   const MaterialFit fit = fitMaterial(samples, family, {.metric = FitMetric::cosine});
@@ -98,34 +100,47 @@ void push(Curve& curve, double x, double y) { curve.x.push_back(x), curve.y.push
 
 /// Supplement, figure 8: materials that Ngan fitted, by the width of their fit.
 Figure factorisationFigure(const std::vector<MeasuredMaterial>& materials) {
-  Figure figure{.id = "measured",
-                .title = "Measured materials: squared error, equation (11), against the data",
-                .xLabel = "fitted width",
-                .yLabel = "squared relative error",
-                .note = "Luminance, both directions up to 80 degrees. The eight materials of Ngan et al. and what is given as a file, best model each. Factorisations where the grid resolves the lobe.",
-                .logX = true,
-                .logY = true,
-                .curves = {{"model, fitted by rho cos", {}, {}}, {"its 3 lobes", {}, {}}, {"model, fitted by log", {}, {}}, {"its 9 fitted lobes (ours)", {}, {}}, {"16 factored terms", {}, {}, true}, {"64 factored terms", {}, {}, true}, {"256 factored terms", {}, {}, true}}};
+  Figure figure{
+      .id = "measured",
+      .title = "Measured materials: squared error, equation (11), against the data",
+      .xLabel = "fitted width",
+      .yLabel = "squared relative error",
+      .note =
+          "Luminance, both directions up to 80 degrees. The eight materials of Ngan et al. and what is given as a file, each by "
+          "its best model. Below a width of .05 the grid of the factorisations is too coarse: their true errors are larger.",
+      .logX = true,
+      .logY = true,
+      .curves = {{"model, fitted by rho cos", {}, {}},
+                 {"its 3 lobes", {}, {}},
+                 {"model, fitted by log", {}, {}},
+                 {"its 9 fitted lobes (ours)", {}, {}},
+                 {"16 factored terms", {}, {}, true},
+                 {"64 factored terms", {}, {}, true},
+                 {"256 factored terms", {}, {}, true}}};
+  for (Curve& curve : figure.curves) curve.joined = false;
   std::vector<const MeasuredMaterial*> order;
   for (const auto& m : materials)
     if (!std::isnan(m.cosineModel)) order.push_back(&m);
-  std::stable_sort(order.begin(), order.end(), [](const auto* a, const auto* b) { return a->best.fit.width < b->best.fit.width; });
+  std::stable_sort(order.begin(), order.end(),
+                   [](const auto* a, const auto* b) { return a->best.fit.width < b->best.fit.width; });
   for (const auto* m : order) {
-    const double values[] = {m->cosineModel, m->cosineMixture, m->best.error, m->ours, m->factored16, m->factored64, m->factored256};
+    const double values[] = {m->cosineModel, m->cosineMixture, m->best.error, m->ours,
+                             m->factored16,  m->factored64,    m->factored256};
     for (std::size_t c = 0; c < figure.curves.size(); ++c) push(figure.curves[c], m->best.fit.width, values[c]);
   }
   return figure;
 }
 
 Figure allFigure(const std::vector<MeasuredMaterial>& materials) {
-  Figure figure{.id = "measured_all",
-                .title = "All measured materials: squared error of what a shader reads, equation (11)",
-                .xLabel = "fitted width",
-                .yLabel = "squared relative error",
-                .note = "Each point is a material, its best model, against its data. Most of the error is the model's: see the table.",
-                .logX = true,
-                .logY = true,
-                .curves = {}};
+  Figure figure{
+      .id = "measured_all",
+      .title = "All measured materials: squared error of what a shader reads, equation (11)",
+      .xLabel = "fitted width",
+      .yLabel = "squared relative error",
+      .note = "Each point is a material, its best model, against its data. Most of the error is the model's: see the table.",
+      .logX = true,
+      .logY = true,
+      .curves = {}};
   for (const MaterialForm form : {MaterialForm::merl, MaterialForm::sgd, MaterialForm::abc, MaterialForm::ngan}) {
     Curve curve;
     curve.name = formName(form);
@@ -153,12 +168,15 @@ std::vector<std::filesystem::path> measuredFiles(const std::vector<std::filesyst
       const bool packed = file.extension() == ".xz" && file.stem().extension() == ".binary";
       if (packed || file.extension() == ".binary" || (file.extension() == ".csv" && isTable(file))) files.insert(file);
     }
-    if (files.size() == before) throw inputError(path.string(), "has no measured material in it", "name a folder with .binary, .binary.xz or tables of fits (.csv)");
+    if (files.size() == before)
+      throw inputError(path.string(), "has no measured material in it",
+                       "name a folder with .binary, .binary.xz or tables of fits (.csv)");
   }
   return {files.begin(), files.end()};
 }
 
-MeasuredStudy studyMeasured(const std::vector<std::filesystem::path>& files, bool quick, int threads, const std::function<void(const std::string&, double)>& progress) {
+MeasuredStudy studyMeasured(const std::vector<std::filesystem::path>& files, bool quick, int threads,
+                            const std::function<void(const std::string&, double)>& progress) {
   struct Item {
     std::string file;
     MaterialData data;
@@ -182,39 +200,63 @@ MeasuredStudy studyMeasured(const std::vector<std::filesystem::path>& files, boo
   StepCounter steps(items.size(), fitted);
   parallelBlocks(threads, items.size(), [&](std::size_t i) {
     const auto& [file, data] = items[i];
-    const MaterialStudy one = studyMaterial(data, {.models = kModels, .lobes = 3, .fit = {.fitF90 = true}, .grid = kGrid, .errorGrid = kErrorGrid, .threads = 1});
+    const MaterialStudy one = studyMaterial(
+        data, {.models = kModels, .lobes = 3, .fit = {.fitF90 = true}, .grid = kGrid, .errorGrid = kErrorGrid, .threads = 1});
     MeasuredMaterial& m = study.materials[i];
-    m = {.file = file, .name = data.name, .form = data.form, .best = one.chosen(), .cosineModel = kUndefined, .cosineMixture = kUndefined, .ours = kUndefined, .factored16 = kUndefined, .factored64 = kUndefined, .factored256 = kUndefined};
+    m = {.file = file,
+         .name = data.name,
+         .form = data.form,
+         .best = one.chosen(),
+         .cosineModel = kUndefined,
+         .cosineMixture = kUndefined,
+         .ours = kUndefined,
+         .factored16 = kUndefined,
+         .factored64 = kUndefined,
+         .factored256 = kUndefined,
+         .resolved = true};
     const bool ofNgan = data.form != MaterialForm::ngan && published.contains(plainName(data.name));
     const bool inFigure = ofNgan || data.form == MaterialForm::merl;
     if (inFigure) {
-      const MaterialStudy cosine = studyMaterial(data, {.models = kModels, .lobes = 3, .fit = {.metric = FitMetric::cosine, .fitF90 = true}, .grid = kGrid, .errorGrid = kErrorGrid, .threads = 1});
+      const MaterialStudy cosine = studyMaterial(data, {.models = kModels,
+                                                        .lobes = 3,
+                                                        .fit = {.metric = FitMetric::cosine, .fitF90 = true},
+                                                        .grid = kGrid,
+                                                        .errorGrid = kErrorGrid,
+                                                        .threads = 1});
       m.cosineModel = cosine.chosen().error, m.cosineMixture = cosine.chosen().mixtureError;
     }
-    if (inFigure && m.best.fit.width * kAzimuths >= 12.0) {
+    m.resolved = m.best.fit.width * kAzimuths >= 12.0;
+    if (inFigure) {
       const auto value = [&](const Vec3& wo, const Vec3& wi) { return luminance(data.reflectance(wo, wi)) * wi.z; };
-      const auto errors = factorisationErrors(value, kWidestMeasured, quick ? 56 : kPolar, quick ? 128 : kAzimuths, {16, 64, 256});
+      const auto errors =
+          factorisationErrors(value, kWidestMeasured, quick ? 56 : kPolar, quick ? 128 : kAzimuths, {16, 64, 256});
       m.factored16 = errors[0], m.factored64 = errors[1], m.factored256 = errors[2];
     }
     if (ofNgan) {
       const auto samples = fitSamples(data.reflectance, kWidestMeasured, kGrid, data.name);
       for (const auto& one_published : published.at(plainName(data.name)))
-        if (one_published.ngan->lobes.front().family != NganFamily::lafortune) refits[i].push_back(refit(plainName(data.name), one_published, data, samples));
+        if (one_published.ngan->lobes.front().family != NganFamily::lafortune)
+          refits[i].push_back(refit(plainName(data.name), one_published, data, samples));
     }
     steps.add();
   });
   for (auto& some : refits) study.refits.insert(study.refits.end(), some.begin(), some.end());
-  std::stable_sort(study.refits.begin(), study.refits.end(), [](const NganRefit& a, const NganRefit& b) { return std::tie(a.material, a.family) < std::tie(b.material, b.family); });
+  std::stable_sort(study.refits.begin(), study.refits.end(), [](const NganRefit& a, const NganRefit& b) {
+    return std::tie(a.material, a.family) < std::tie(b.material, b.family);
+  });
 
   for (const int kind : kModels) {
-    if (kind == kAshikhminShirley || std::none_of(study.materials.begin(), study.materials.end(), [&](const auto& m) { return m.best.kind == kind; })) continue;
+    if (kind == kAshikhminShirley ||
+        std::none_of(study.materials.begin(), study.materials.end(), [&](const auto& m) { return m.best.kind == kind; }))
+      continue;
     const std::string stage = std::string("lobes of ") + modelJsonName(kind);
     progress(stage, 0.0);
     const ReflectanceTable table = makeReflectanceTable(kind, ReflectanceTable::kWidths, ReflectanceTable::kCosines, threads);
     parallelBlocks(threads, items.size(), [&](std::size_t i) {
       MeasuredMaterial& m = study.materials[i];
       if (m.best.kind != kind) return;
-      m.ours = reconstructionError(fitSamples(items[i].data.reflectance, kWidestMeasured, kErrorGrid, items[i].data.name), shaderReflectance(table, m.best.fit));
+      m.ours = reconstructionError(fitSamples(items[i].data.reflectance, kWidestMeasured, kErrorGrid, items[i].data.name),
+                                   shaderReflectance(table, m.best.fit));
     });
   }
   study.figures = {factorisationFigure(study.materials), allFigure(study.materials)};
