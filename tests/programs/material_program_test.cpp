@@ -139,6 +139,7 @@ TEST(MaterialProgram, Distribution) {
 }
 
 TEST(MaterialProgram, GoesOntoASceneWhenItIsBaked) {
+  std::filesystem::remove("onto.glb");  // of an earlier run
   ASSERT_EQ(material({ggxFile(), "--model", "ggx", "-o", "onto.gltf"}).code, 0);
   const std::vector<std::string> bake{"builtin:sphere", "-o", "onto.glb", "--resolution", "16", "--terms", "8",
                                       "--directions",   "8"};
