@@ -18,6 +18,7 @@ set(finders
   "^Threads::Threads$" "find_dependency(Threads)"
   "^embree$" "find_dependency(embree ${embree_major} CONFIG)"
   "^Eigen3::" "find_dependency(Eigen3)"
+  "^Ceres::" "find_dependency(Ceres)"
   "^BLAS::" "set(BLA_VENDOR OpenBLAS)\nfind_dependency(BLAS)"
   "^OpenMesh(Core|Tools)$" "find_dependency(OpenMesh)"
   "^(OpenEXR|Imath)::" "find_dependency(OpenEXR CONFIG)"

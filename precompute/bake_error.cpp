@@ -112,13 +112,14 @@ double quantisationRms(const TracedSignal& traced, const Pca& pca, const Transfe
 }
 
 /// On the axis' side of the surface; beyond the horizon the truth is the mirror image of what is before it.
-double tracedFraction(const RayScene& rays, const Viewpoint& viewpoint, glm::dvec3 axis, double sharpness, double turn) {
+double tracedFraction(const RayScene& rays, const Viewpoint& viewpoint, glm::dvec3 axis, const LobeRays& lobe, double turn) {
   const bool front = glm::dot(glm::vec3(axis), viewpoint.normal) > 0.0f;
   const auto n = front ? viewpoint.normal : -viewpoint.normal;
   const auto origin = front ? viewpoint.front : viewpoint.back;
   std::uint32_t seen = 0;
-  for (std::uint32_t i = 0; i < kRays; ++i) {
-    auto w = lobeDirection(axis, sharpness, i, kRays, turn);
+  std::array<glm::vec3, kRays> directions;
+  lobe.directions(axis, turn, directions);
+  for (auto w : directions) {
     const float cosine = glm::dot(w, n);
     if (cosine < 0.0f) w -= 2.0f * cosine * n;
     if (!rays.occluded(origin, w, 0.0f, std::numeric_limits<float>::infinity())) ++seen;
@@ -133,6 +134,8 @@ struct FractionError {
 FractionError fractionError(const TracedSignal& traced, const Transfer& transfer, const BakeSettings& settings, StepCounter& steps) {
   const auto& grid = *traced.grid;
   const auto vertices = sampleVertices(traced.viewpoints->size(), kSampledVertices, settings.seed + 1);
+  std::vector<LobeRays> lobes;
+  for (const auto sharpness : kSharpness) lobes.emplace_back(sharpness, kRays);
   std::vector<FractionError> parts(vertices.size());
   parallelBlocks(settings.threads, vertices.size(), [&](std::size_t i) {
     const auto& viewpoint = (*traced.viewpoints)[vertices[i]];
@@ -153,7 +156,7 @@ FractionError fractionError(const TracedSignal& traced, const Transfer& transfer
       };
       const double storedDistance = distanceIn(stored), exactDistance = distanceIn(exact);
       for (std::size_t s = 0; s < kSharpness.size(); ++s) {
-        const double truth = tracedFraction(*traced.rays, viewpoint, axis, kSharpness[s], turn);
+        const double truth = tracedFraction(*traced.rays, viewpoint, axis, lobes[s], turn);
         parts[i].stored[s] += std::abs(lobe64::ssdfVisibleFraction(storedDistance, kSharpness[s]) - truth);
         parts[i].uncompressed[s] += std::abs(lobe64::ssdfVisibleFraction(exactDistance, kSharpness[s]) - truth);
       }

@@ -41,6 +41,8 @@ ClusteredTruth::ClusteredTruth(const RayScene& rays, const std::vector<Viewpoint
     vertices_.push_back(static_cast<std::uint32_t>(uniform(random) * static_cast<double>(viewpoints.size())));
   exact_.resize(count * rows.size());
   axes_.resize(count);
+  std::vector<LobeRays> lobeRays;
+  for (const auto sharpness : kSharpness) lobeRays.emplace_back(sharpness, kRays);
   StepCounter steps(count, progress);
   parallelBlocks(threads_, blocks(count), [&](std::size_t block) {
     const auto begin = block * kBlock, n = std::min(kBlock, count - begin);
@@ -60,7 +62,7 @@ ClusteredTruth::ClusteredTruth(const RayScene& rays, const std::vector<Viewpoint
         const auto normal = front ? viewpoint.normal : -viewpoint.normal;
         auto& lobes = axes_[i].emplace_back(Axis{.axis = axis, .aboveHorizon = {}, .visible = {}});
         for (std::size_t s = 0; s < kSharpness.size(); ++s) {
-          for (std::uint32_t r = 0; r < kRays; ++r) directions[r] = lobeDirection(axis, kSharpness[s], r, kRays, turn);
+          lobeRays[s].directions(axis, turn, directions);
           lobes.visible[s] = tracedShare(rays, front ? viewpoint.front : viewpoint.back, normal, directions);
           lobes.aboveHorizon[s] = lobe64::sgHalfSpaceFraction(glm::dot(axis, glm::dvec3(normal)), static_cast<double>(kSharpness[s]));
         }

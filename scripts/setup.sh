@@ -5,7 +5,7 @@ set -eu
 
 packages="
   g++ cmake ninja-build ccache pkg-config git
-  libembree-dev libeigen3-dev libopenblas-pthread-dev libopenmesh-dev
+  libembree-dev libeigen3-dev libopenblas-pthread-dev libopenmesh-dev libceres-dev
   libglm-dev libcli11-dev nlohmann-json3-dev libxxhash-dev liblzma-dev
   libtinygltf-dev libpng-dev libturbojpeg0-dev libopenexr-dev
   libepoxy-dev libegl-dev libgl-dev libglfw3-dev libimgui-dev

@@ -12,6 +12,7 @@ namespace {
 using Matrix = RowMajor<float>;
 
 constexpr double kPrior = 1e-2;
+constexpr float kFaintest = 1e-4f;
 
 Eigen::Index index(std::size_t i) { return static_cast<Eigen::Index>(i); }
 
@@ -28,8 +29,15 @@ MaskedProjection::MaskedProjection(const Pca& pca, const std::vector<float>& col
   if (pca.terms == 0) return;
   parallelBlocks(threads, masks_.size(), [&](std::size_t m) {
     if (masks_[m].empty()) return;
-    const Eigen::Map<const Eigen::VectorXf> mask(masks_[m].data(), weighted_.rows());
-    const Matrix scaled = (mask.array() * weight.array()).sqrt().matrix().asDiagonal() * functions.transpose();
+    // What the mask all but leaves out adds nothing to the normal equations.
+    std::vector<std::size_t> used;
+    for (std::size_t j = 0; j < masks_[m].size(); ++j)
+      if (masks_[m][j] > kFaintest) used.push_back(j);
+    Matrix scaled(index(used.size()), weighted_.cols());
+    for (std::size_t i = 0; i < used.size(); ++i) {
+      const auto j = index(used[i]);
+      scaled.row(index(i)) = std::sqrt(masks_[m][used[i]] / weight[j]) * weighted_.row(j);
+    }
     Eigen::MatrixXd normal = gram(scaled).cast<double>();
     for (int k = 0; k < pca.terms; ++k) normal(k, k) += kPrior * pca.energy.back() / pca.energy[static_cast<std::size_t>(k)];
     inverse_[m] = inverseOfPositive(std::move(normal)).cast<float>();

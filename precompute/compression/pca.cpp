@@ -50,8 +50,9 @@ std::size_t pcaMemory(std::size_t rows, std::size_t columns, const PcaSettings& 
   const auto width = std::min({static_cast<std::size_t>(settings.terms + settings.oversampling), rows, columns});
   const auto strip = std::min(WeightedRows::kStripBytes, 2 * rows * columns) + 2 * RowBlocks::kRows * columns;
   const auto threads = static_cast<std::size_t>(threadCount(settings.threads));
-  // The widest moment is orthonormalising: the block, its copy in double, its factors and the result. Rows in use are held as floats too.
-  return strip + strip / columns * width * 2 + threads * RowBlocks::kRows * columns * 4 + columns * width * 36 + rows * width * 4;
+  // The widest moment is orthonormalising: the block, its copy in double, its factors and the result. Rows in use are held as floats too, and a whole
+  // strip of them where they are filled in.
+  return 3 * strip + strip / columns * width * 2 + threads * RowBlocks::kRows * columns * 4 + columns * width * 36 + rows * width * 4;
 }
 
 Pca computePca(const RowBlocks& rows, float range, const std::vector<float>& columnWeight, const PcaSettings& settings,

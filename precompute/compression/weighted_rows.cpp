@@ -80,23 +80,20 @@ WeightedRows::Filled WeightedRows::filledCovariance(const ColumnMasks& masks, co
                 .mean = Eigen::RowVectorXd::Zero(index(columns))};
   std::vector<double> energy(rows_.blocks(), 0.0);
   forEachStrip([&](std::size_t first, const Strip& strip) {
-    std::vector<Matrix> guessed(strip.size());
+    std::vector<Matrix> filled(strip.size());
     parallelBlocks(threads_, strip.size(), [&](std::size_t b) {
-      Matrix part(index(rows_.rowsOf(first + b)), index(columns));
+      auto& part = filled[b];
+      part.resize(index(rows_.rowsOf(first + b)), index(columns));
       load(strip[b], 0, part);
-      fill(first + b, 0, masks, productTransposedB(coordinates[first + b], basis), part);
-      guessed[b] = std::move(coordinates[first + b]);
+      fill(first + b, masks, productTransposedB(coordinates[first + b], basis), part);
       coordinates[first + b] = product(part, basis);
       for (Eigen::Index i = 0; i < part.rows(); ++i) energy[first + b] += static_cast<double>(part.row(i).squaredNorm());
       steps.add();
     });
     parallelBlocks(threads_, columnBlocks(), [&](std::size_t block) {
       const auto begin = block * kColumnBlock, count = std::min(kColumnBlock, columns - begin);
-      Matrix part;
       for (std::size_t b = 0; b < strip.size(); ++b) {
-        part.resize(guessed[b].rows(), index(count));
-        load(strip[b], begin, part);
-        fill(first + b, begin, masks, productTransposedB(guessed[b], basis.middleRows(index(begin), index(count))), part);
+        const auto part = filled[b].middleCols(index(begin), index(count));
         result.covariance.middleRows(index(begin), index(count)) +=
             productTransposedA(part, coordinates[first + b]).cast<double>();
         result.mean.segment(index(begin), index(count)) += part.cast<double>().colwise().sum();
@@ -140,12 +137,11 @@ void WeightedRows::load(const std::int16_t* block, std::size_t firstColumn, Matr
   }
 }
 
-void WeightedRows::fill(std::size_t block, std::size_t firstColumn, const ColumnMasks& masks, const Matrix& guess,
-                        Matrix& part) const {
+void WeightedRows::fill(std::size_t block, const ColumnMasks& masks, const Matrix& guess, Matrix& part) const {
   for (Eigen::Index i = 0; i < part.rows(); ++i) {
     const auto& mask = masks.of(block * RowBlocks::kRows + static_cast<std::size_t>(i));
     if (mask.empty()) continue;
-    const float* known = mask.data() + firstColumn;
+    const float* known = mask.data();
     const auto* from = guess.row(i).data();
     auto* to = part.row(i).data();
     for (std::size_t j = 0; j < static_cast<std::size_t>(part.cols()); ++j) to[j] = from[j] + known[j] * (to[j] - from[j]);

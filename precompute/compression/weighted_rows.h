@@ -17,7 +17,7 @@ namespace chiaro {
 class WeightedRows {
  public:
   using Matrix = RowMajor<float>;
-  static constexpr std::size_t kStripBytes = std::size_t{64} << 20;
+  static constexpr std::size_t kStripBytes = std::size_t{32} << 20;
 
   /// The mean is that of the rows as they are.
   WeightedRows(const RowBlocks& rows, float range, const std::vector<float>& columnWeight, int threads);
@@ -51,8 +51,8 @@ class WeightedRows {
                 StepCounter& steps) const;
   /// Columns firstColumn, ... of a block's first rows, as many as `part` has.
   void load(const std::int16_t* block, std::size_t firstColumn, Matrix& part) const;
-  /// part: those columns of a block, loaded. Off the masks they become `guess`.
-  void fill(std::size_t block, std::size_t firstColumn, const ColumnMasks& masks, const Matrix& guess, Matrix& part) const;
+  /// part: a block, loaded. Off the masks it becomes `guess`.
+  void fill(std::size_t block, const ColumnMasks& masks, const Matrix& guess, Matrix& part) const;
 
   const RowBlocks& rows_;
   float step_;

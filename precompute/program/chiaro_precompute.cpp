@@ -14,6 +14,8 @@
 #include "assets/program/program.h"
 #include "assets/program/progress_bar.h"
 #include "assets/scene/load_scene.h"
+#include "assets/scene/material_override.h"
+#include "assets/scene/material_replacement.h"
 #include "assets/transfer/transfer.h"
 #include "assets/transfer/transfer_format.h"
 #include "precompute/bake.h"
@@ -21,6 +23,7 @@
 #include "precompute/elapsed.h"
 #include "precompute/memory_budget.h"
 #include "precompute/program/bake_json.h"
+#include "precompute/program/material_program.h"
 
 namespace {
 
@@ -36,6 +39,9 @@ constexpr const char* kExamples = R"(Examples:
       more triangles where walls and floors have too few for their shadows
   chiaro-precompute statue.ply -o statue.glb --memory-limit 1024
       a million vertices in a gigabyte; stopped or killed, the same command goes on where it was
+  chiaro-precompute material gold.binary -o gold.gltf
+      a measured reflectance as a material; has options of its own, see chiaro-precompute material --help
+  chiaro-precompute room.gltf --material handle=gold.gltf -o room.glb
   chiaro-view baked.glb
       shows the result
 
@@ -47,6 +53,7 @@ struct Options {
   std::string scene;
   std::filesystem::path output;
   std::filesystem::path json;
+  std::vector<std::string> materials;  ///< NAME=FILE
   BakeSettings settings;
   double creaseAngleDegrees = 60.0;
   double memoryLimitMib = 0.0;
@@ -62,6 +69,10 @@ void declare(CLI::App& app, Options& options) {
   app.add_option("scene", options.scene, "Scene file, or builtin:NAME")->required()->type_name("FILE|builtin:NAME");
   app.add_option("-o,--output", options.output, "Baked scene to write (.glb)")->required()->type_name("FILE");
   app.add_option("--json", options.json, "Also write sizes, seconds, errors and repairs here")->type_name("FILE");
+
+  app.add_option("--material", options.materials, "Put the material of a glTF file on the scene's material of this name (\"default\" where there is none); may be repeated")
+      ->type_name("NAME=FILE.gltf")
+      ->allow_extra_args(false);
 
   const std::map<std::string, Compression> forms{{"pca", Compression::pca}, {"clustered", Compression::clustered}, {"joint", Compression::joint}};
   app.add_option("--compression", settings.compression, "pca (global), clustered, or joint (clustered, with prefiltered visibility)")
@@ -143,6 +154,11 @@ void finish(Options& options) {
   const auto lost = [](const char* option) { return usageError(option, "names the scene itself, which would be lost", "give another name"); };
   if (isSameFile(options.json, options.scene)) throw lost("--json");
   if (isSameFile(options.output, options.scene) && !isBaked(options.scene)) throw lost("--output");
+  for (const std::string& one : options.materials) {
+    const auto equals = one.find('=');
+    if (equals == std::string::npos || equals == 0 || equals + 1 == one.size()) throw usageError("--material", "\"" + one + "\" is not NAME=FILE", "write such as body=gold.gltf");
+    if (isSameFile(options.json, one.substr(equals + 1))) throw usageError("--json", "names a material, which would be lost", "give another name");
+  }
   // An hour's work should not be lost to a typing mistake.
   requireWritable(options.output);
   requireWritable(partialOf(options.output));
@@ -194,6 +210,12 @@ void printSummary(const Options& options, const BakeRun& run, const BakeReport& 
   }
 }
 
+void replaceMaterials(const Options& options, Scene& scene, const WarningHandler& warn) {
+  if (options.materials.empty()) return;
+  nameDefaultMaterial(scene);
+  for (const std::string& one : options.materials) replaceMaterial(scene, one.substr(0, one.find('=')), one.substr(one.find('=') + 1), warn);
+}
+
 /// A bake that goes on must be the same program's: its version, and its very bytes where the system shows them.
 std::string identity() {
   std::string text = "chiaro-precompute " CHIARO_VERSION ", " + blasName();
@@ -233,11 +255,12 @@ ExitCode precompute(int argc, char** argv) {
   ProgressBar bar(progressStyle(options.quiet));
   BakeRun run{.input = options.scene, .output = options.output.string(), .version = CHIARO_VERSION, .settings = options.settings, .memoryLimitMib = options.memoryLimitMib};
   const auto loadStart = Clock::now();
-  auto scene = isBuiltinName(options.scene) ? builtinScene(options.scene.substr(options.scene.find(':') + 1))
-                                                  : loadScene(options.scene, [&](const std::string& warning) {
-                                                      run.warnings.push_back(warning);
-                                                      if (options.verbose) std::fprintf(stderr, "warning: %s\n", warning.c_str());
-                                                    });
+  const auto warn = [&](const std::string& warning) {
+    run.warnings.push_back(warning);
+    if (options.verbose) std::fprintf(stderr, "warning: %s\n", warning.c_str());
+  };
+  auto scene = isBuiltinName(options.scene) ? builtinScene(options.scene.substr(options.scene.find(':') + 1)) : loadScene(options.scene, warn);
+  replaceMaterials(options, scene, warn);
   run.loadSeconds = secondsSince(loadStart);
   throwIfInterrupted();
 
@@ -288,5 +311,8 @@ ExitCode precompute(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return chiaro::runMain("chiaro-precompute", [&] { return precompute(argc, argv); });
+  return chiaro::runMain("chiaro-precompute", [&] {
+    if (argc > 1 && std::string_view(argv[1]) == "material") return chiaro::materialProgram(argc - 1, argv + 1);
+    return precompute(argc, argv);
+  });
 }

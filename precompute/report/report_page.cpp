@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "precompute/report/base64.h"
+#include "precompute/figure/html_text.h"
 #include "precompute/report/error_map.h"
 
 namespace chiaro {
@@ -97,32 +98,6 @@ std::string settings(const ReportFacts& facts, const ReportOptions& options, con
 }
 
 }  // namespace
-
-std::string htmlText(const std::string& text) {
-  std::string result;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      case '\'':
-        result += "&#39;";
-        break;
-      default:
-        result += c;
-    }
-  }
-  return result;
-}
 
 std::string reportPage(const ReportFacts& facts, const ReportOptions& options, const Comparisons& comparisons,
                        const std::vector<CasePictures>& pictures) {

@@ -18,7 +18,4 @@ struct CasePictures {
 std::string reportPage(const ReportFacts& facts, const ReportOptions& options, const Comparisons& comparisons,
                        const std::vector<CasePictures>& pictures);
 
-/// &, <, > and quotes as entities.
-std::string htmlText(const std::string& text);
-
 }  // namespace chiaro

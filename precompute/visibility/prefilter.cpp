@@ -11,9 +11,9 @@ namespace chiaro {
 namespace {
 
 constexpr int kFinest = 64;             // a lobe of sharpness 128 is wider than this map's texels
-constexpr float kFaintest = 1e-4f;      // of a lobe's peak: what is left out
+constexpr float kFaintest = 1e-3f;      // of a lobe's peak: what is left out
 constexpr float kLeastAbove = 1.0f / 30.0f;
-constexpr float kTexelsPerLobe = 1.5f;  // a texel is at most this part of the lobe's standard deviation 1 / sqrt(sharpness)
+constexpr float kTexelsPerLobe = 1.48f;  // a texel is at most this part of the lobe's standard deviation 1 / sqrt(sharpness)
 
 // Bits of Scratch::wanted.
 constexpr std::uint8_t kSeen = 1, kAll = 2;

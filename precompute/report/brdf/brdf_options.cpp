@@ -11,6 +11,8 @@ void declareBrdfOptions(CLI::App& app, BrdfOptions& options) {
   app.add_option("-o,--output", options.output, "Folder for index.html, brdf.json and brdf.csv")->type_name("DIR");
   app.add_option("--json", options.json, "Write the figures here")->type_name("FILE");
   app.add_flag("--quick", options.quick, "Fewer parameters and coarser grids, for a look in seconds");
+  app.add_option("--measured", options.measured, "Also fit the measured materials of this file or folder; may be repeated")
+      ->type_name("PATH");
   app.add_option("--warp-choice", options.warpChoice,
                  "Measure which warp is best where, write it as shaders/lobe/warp_choice.glsl, and nothing else")
       ->type_name("FILE");

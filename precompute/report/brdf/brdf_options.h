@@ -2,6 +2,7 @@
 /// What `chiaro-report brdf` was asked to do.
 
 #include <filesystem>
+#include <vector>
 
 namespace CLI {
 class App;
@@ -13,6 +14,7 @@ struct BrdfOptions {
   std::filesystem::path output;      ///< a folder, made where missing; empty: none
   std::filesystem::path json;        ///< empty: none
   std::filesystem::path warpChoice;  ///< write the table of warps here and measure nothing else; empty: no
+  std::vector<std::filesystem::path> measured;  ///< files and folders of measured materials; empty: none
   int threads = 0;
   bool quick = false;
   bool quiet = false;

@@ -18,8 +18,10 @@ constexpr const char* kExamples = R"(Examples:
   chiaro-report brdf -o brdf
       every figure and the table of errors; open brdf/index.html
   chiaro-report brdf --quick
+  chiaro-report brdf -o brdf --measured ../shared/data
+      also all measured materials of a folder: fits, and their lobes against the data
 
-Exit codes: 0 done, 1 failed, 2 wrong usage, 4 unwritable output, 5 an error is over its limit, 130 interrupted.)";
+Exit codes: 0 done, 1 failed, 2 wrong usage, 3 unreadable input, 4 unwritable output, 5 an error is over its limit, 130 interrupted.)";
 
 }  // namespace
 
@@ -43,11 +45,18 @@ ExitCode brdfReport(int argc, const char* const* argv) {
     writeFileAtomically(options.warpChoice, warpChoiceText(options.threads));
     return ExitCode::done;
   }
+  const auto files = measuredFiles(options.measured);
   ProgressBar bar(progressStyle(options.quiet));
-  const BrdfStudy study = studyBrdfs(options.quick, options.threads, [&](const std::string& stage, double done) {
+  const auto progress = [&](const std::string& stage, double done) {
     throwIfInterrupted();
     bar.update(stage, done);
-  });
+  };
+  // What can be unreadable comes first.
+  MeasuredStudy measured;
+  if (!files.empty()) measured = studyMeasured(files, options.quick, options.threads, progress);
+  BrdfStudy study = studyBrdfs(options.quick, options.threads, progress);
+  study.figures.insert(study.figures.end(), measured.figures.begin(), measured.figures.end());
+  study.measured = std::move(measured);
   bar.clear();
   const std::string json = brdfJson(study, CHIARO_VERSION);
   if (!options.output.empty()) {

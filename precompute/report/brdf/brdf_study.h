@@ -6,7 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "precompute/report/brdf/figure.h"
+#include "precompute/figure/figure.h"
+#include "precompute/report/brdf/measured_study.h"
 
 namespace chiaro {
 
@@ -39,6 +40,7 @@ struct BrdfStudy {
   std::vector<Figure> figures;
   std::vector<ModelError> models;
   std::vector<ElongatedError> elongated;
+  MeasuredStudy measured;  ///< empty unless it was asked for
 };
 
 /// quick: coarse tables and grids, fewer parameters, for tests; its figures are good to some 20 %. Deterministic whatever `threads`.

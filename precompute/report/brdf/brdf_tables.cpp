@@ -6,7 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "precompute/report/report_page.h"
+#include "precompute/figure/html_text.h"
+#include "precompute/report/brdf/measured_tables.h"
 
 namespace chiaro {
 namespace {
@@ -75,6 +76,7 @@ std::string brdfTable(const BrdfStudy& study) {
     for (const double error : e.byCount) text += padded(formatted("%.2e", error), 12);
     text += "\n";
   }
+  if (!study.measured.empty()) text += measuredTable(study.measured);
   return text;
 }
 
@@ -104,6 +106,7 @@ std::string brdfJson(const BrdfStudy& study, const std::string& version) {
                                  {"y", e.y},
                                  {"lobes", ElongatedError::kCounts},
                                  {"error_75", numbers({e.byCount.begin(), e.byCount.end()})}});
+  if (!study.measured.empty()) json["measured"] = measuredJson(study.measured);
   json["figures"] = Json::array();
   for (const Figure& figure : study.figures) {
     Json one{{"id", figure.id}, {"title", figure.title}, {"x", figure.xLabel}, {"y", figure.yLabel}, {"curves", Json::array()}};
@@ -168,7 +171,9 @@ std::string brdfPage(const BrdfStudy& study, const std::string& version) {
     for (const double error : e.byCount) html += "<td>" + formatted("%.2g", error) + "</td>";
     html += "</tr>\n";
   }
-  html += "</table></div>\n<p class=\"soft\">chiaro-report " + htmlText(version) + (study.quick ? ", quick: coarse" : "") + ", " +
+  html += "</table></div>\n";
+  if (!study.measured.empty()) html += measuredHtml(study.measured);
+  html += "<p class=\"soft\">chiaro-report " + htmlText(version) + (study.quick ? ", quick: coarse" : "") + ", " +
           formatted("%.0f", study.seconds) + " s.</p>\n";
   return html + "</body></html>\n";
 }

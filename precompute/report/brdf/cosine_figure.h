@@ -1,5 +1,5 @@
 #pragma once
-#include "precompute/report/brdf/figure.h"
+#include "precompute/figure/figure.h"
 
 namespace chiaro {
 

@@ -35,8 +35,8 @@ std::vector<double> errorsOf(std::vector<double> squares, const std::vector<int>
   return errors;
 }
 
-std::vector<double> roundSquares(const lobe64::ReflectanceModel& model, double widest, int polar, int azimuths) {
-  const GaussRule in = gaussLegendre(polar, 0.0, 1.0), out = gaussLegendre(polar, std::cos(widest), 1.0);
+std::vector<double> roundSquares(const RoundReflectance& timesCosine, double widestIn, double widestOut, int polar, int azimuths) {
+  const GaussRule in = gaussLegendre(polar, std::cos(widestIn), 1.0), out = gaussLegendre(polar, std::cos(widestOut), 1.0);
   const int half = azimuths / 2;
   // Even in azimuth: a cosine transform over [0, pi]. Orthonormal, so that squares of blocks add up to the square of the whole.
   MatrixXd transform(half + 1, half + 1);
@@ -53,7 +53,8 @@ std::vector<double> roundSquares(const lobe64::ReflectanceModel& model, double w
       const double weight = zo * std::sqrt(in.weight[static_cast<std::size_t>(i)] * out.weight[static_cast<std::size_t>(o)]);
       for (int j = 0; j <= half; ++j) {
         const double phi = lobe64::kPi * j / half;
-        values(j, i) = weight * lobe64::modelTimesCosine(model, wo, Vec3(s * std::cos(phi), s * std::sin(phi), zi));
+        const double value = timesCosine(wo, Vec3(s * std::cos(phi), s * std::sin(phi), zi));
+        values(j, i) = std::isnan(value) ? 0.0 : weight * value;
       }
     }
     const MatrixXd spectrum = transform * values;
@@ -98,9 +99,13 @@ std::vector<double> mirroredSquares(const lobe64::ReflectanceModel& model, doubl
 
 std::vector<double> factorisationErrors(const lobe64::ReflectanceModel& model, double widest, int polar, int azimuths,
                                         const std::vector<int>& terms) {
-  return errorsOf(model.x == model.y && model.kind != lobe64::kAshikhminShirley ? roundSquares(model, widest, polar, azimuths)
-                                                                                : mirroredSquares(model, widest, polar, azimuths),
-                  terms);
+  if (model.x != model.y || model.kind == lobe64::kAshikhminShirley) return errorsOf(mirroredSquares(model, widest, polar, azimuths), terms);
+  const auto value = [&](const Vec3& wo, const Vec3& wi) { return lobe64::modelTimesCosine(model, wo, wi); };
+  return errorsOf(roundSquares(value, lobe64::kHalfPi, widest, polar, azimuths), terms);
+}
+
+std::vector<double> factorisationErrors(const RoundReflectance& timesCosine, double widest, int polar, int azimuths, const std::vector<int>& terms) {
+  return errorsOf(roundSquares(timesCosine, widest, widest, polar, azimuths), terms);
 }
 
 }  // namespace chiaro

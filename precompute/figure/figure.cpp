@@ -1,11 +1,11 @@
-#include "precompute/report/brdf/figure.h"
+#include "precompute/figure/figure.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <limits>
 
-#include "precompute/report/report_page.h"
+#include "precompute/figure/html_text.h"
 
 namespace chiaro {
 namespace {
@@ -91,13 +91,13 @@ std::string figureSvg(const Figure& figure) {
        "text-anchor=\"middle\" transform=\"rotate(-90 14 " + place((kTop + kHeight - kBottom) / 2) + ")\"");
   for (std::size_t c = 0; c < figure.curves.size(); ++c) {
     const Curve& curve = figure.curves[c];
-    const std::string colour = kColours[c % std::size(kColours)];
+    const std::string colour = kColours[(curve.colour < 0 ? c : static_cast<std::size_t>(curve.colour)) % std::size(kColours)];
     const std::string dash = curve.dashed ? " stroke-dasharray=\"5 4\"" : "";
     std::string points, dots;
     for (std::size_t i = 0; i < curve.x.size(); ++i) {
       if (!ax.shows(curve.x[i]) || !ay.shows(curve.y[i])) continue;
-      points += place(px(curve.x[i])) + "," + place(py(curve.y[i])) + " ";
-      dots += "<circle cx=\"" + place(px(curve.x[i])) + "\" cy=\"" + place(py(curve.y[i])) + "\" r=\"2.5\" fill=\"" + colour +
+      if (curve.joined) points += place(px(curve.x[i])) + "," + place(py(curve.y[i])) + " ";
+      if (curve.dotted) dots += "<circle cx=\"" + place(px(curve.x[i])) + "\" cy=\"" + place(py(curve.y[i])) + "\" r=\"2.5\" fill=\"" + colour +
               "\"><title>" + htmlText(curve.name) + ": " + number(curve.x[i]) + ", " + number(curve.y[i]) + "</title></circle>";
     }
     svg += "<g><title>" + htmlText(curve.name) + "</title><polyline fill=\"none\" stroke=\"" + colour + "\" stroke-width=\"2\"" +
@@ -108,6 +108,16 @@ std::string figureSvg(const Figure& figure) {
     text(kWidth - kRight + 38, y + 4, curve.name, "");
   }
   return svg + "</svg>\n";
+}
+
+std::string figureFile(const Figure& figure) {
+  const std::string inner = figureSvg(figure);
+  const auto from = inner.find('\n') + 1, to = inner.rfind("</svg>");
+  return "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 -28 640 452\" role=\"img\">\n"
+         "<style>text{font:12px system-ui,sans-serif;fill:#1c1c1c}.grid{stroke:#ddd}</style>\n"
+         "<rect y=\"-28\" width=\"640\" height=\"452\" fill=\"#fff\"/>\n<text x=\"10\" y=\"-8\">" +
+         htmlText(figure.title) + "</text>\n" + inner.substr(from, to - from) + "<text x=\"10\" y=\"414\" style=\"font-size:10px;fill:#666\">" +
+         htmlText(figure.note) + "</text>\n</svg>\n";
 }
 
 }  // namespace chiaro
