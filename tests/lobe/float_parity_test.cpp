@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <limits>
 
+#include "tests/lobe/extreme_models.h"
 #include "tests/lobe/parity.h"
 
 namespace chiaro::parity {
@@ -25,6 +26,17 @@ TEST_P(FloatParity, MatchesDouble) {
 
 INSTANTIATE_TEST_SUITE_P(Lobe, FloatParity, testing::Range(std::size_t{0}, allCases().size()),
                          [](const auto& index) { return allCases()[index.param].name; });
+
+// A million models at their ends, seen and lit from the ends of all directions.
+TEST(Extremes, ModelsAreFiniteAndNeverNegative) {
+  const Case c = extremeModels();
+  const auto radiance = runFloat(c);
+  EXPECT_EQ(countBad(radiance), 0u) << firstBad(c, radiance);
+  EXPECT_GT(countLit(radiance), c.sampleCount());
+  const auto wide = runDouble(c);
+  EXPECT_EQ(countBad(wide), 0u) << firstBad(c, wide);
+  EXPECT_GT(countLit(wide), c.sampleCount());
+}
 
 // Where float is weakest: the worst relative error by decade of sharpness, of the stable forms and of the textbook ones that they replace.
 // The textbook columns show that the inputs are hard enough to tell: they must be bad where ours are good.

@@ -9,10 +9,10 @@
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
-#include <random>
 
 #include "runtime/gl/buffer.h"
 #include "runtime/gl/program.h"
+#include "tests/lobe/extreme_models.h"
 #include "tests/lobe/gl_test_main.h"
 #include "tests/lobe/parity.h"
 
@@ -78,37 +78,12 @@ TEST_P(GlslParity, MatchesDouble) {
 INSTANTIATE_TEST_SUITE_P(Lobe, GlslParity, testing::Range(std::size_t{0}, allCases().size()),
                          [](const auto& index) { return allCases()[index.param].name; });
 
-// A million models at their ends, in directions at the ends of theirs: light is finite and never negative.
+// A million models at their ends, seen and lit from the ends of all directions (float C++ and double: float_parity_test.cpp).
 TEST(GlslExtremes, ModelsAreFiniteAndNeverNegative) {
-  std::mt19937_64 engine(11);
-  std::uniform_real_distribution<double> unit(0, 1);
-  std::normal_distribution<double> gauss;
-  Case c = caseNamed("reflectanceTimesCosine");
-  c.inputs.clear();
-  const auto direction = [&] {
-    glm::dvec3 d(gauss(engine), gauss(engine), gauss(engine));
-    const double kind = unit(engine);
-    if (kind < .3) d.z *= std::pow(10.0, -8 * unit(engine));
-    else if (kind < .5) d = glm::dvec3(d.x * 1e-4, d.y * 1e-4, 1);
-    return glm::vec3(glm::normalize(d));
-  };
-  for (int i = 0; i < 1'000'000; ++i) {
-    const int kind = i % lobe64::kModelCount;
-    c.inputs.push_back(static_cast<float>(kind));
-    for (int k = 0; k < 2; ++k) {
-      const double u = unit(engine) < .3 ? std::round(unit(engine)) : unit(engine);
-      c.inputs.push_back(static_cast<float>(lobe64::modelHasExponent(kind) ? std::pow(10.0, 6 * u) : std::pow(10.0, -4 * u)));
-    }
-    const glm::vec3 wo = direction(), wi = unit(engine) < .5 ? glm::vec3(-wo.x, -wo.y, wo.z) : direction();
-    c.inputs.insert(c.inputs.end(), {wo.x, wo.y, wo.z, wi.x, wi.y, wi.z, std::round(static_cast<float>(unit(engine)))});
-  }
-  std::size_t bad = 0, lit = 0;
-  for (const float value : runGlsl(c, readShader)) {
-    bad += !(std::isfinite(value) && value >= 0.0f);
-    lit += value > 0.0f;
-  }
-  EXPECT_EQ(bad, 0u);
-  EXPECT_GT(lit, 400'000u);
+  const Case c = extremeModels();
+  const auto radiance = runGlsl(c, readShader);
+  EXPECT_EQ(countBad(radiance), 0u) << firstBad(c, radiance);
+  EXPECT_GT(countLit(radiance), c.sampleCount());
 }
 
 // A test of the test: one constant 0.1 % off in the GLSL alone must be found.

@@ -333,3 +333,19 @@ KERNEL(elongatedLobes) {
   y[0] = sum;
   y[1] = whole;
 }
+// What a light of intensity 10 from (6..8) makes of model (0..2), viewer (3..5), F0 (9): by the model itself, then all that its strings of lobes reflect.
+KERNEL(modelRadiance) {
+  ReflectanceModel m = modelAt(x);
+  Vec3 value = reflectanceTimesCosine(m, Vec3(x.v[9], x.v[9], x.v[9]), vectorAt(x, 3), vectorAt(x, 6)) * x.v[10];
+  y[0] = value.x;
+  Real whole = Real(0.0);
+  SphericalGaussian lobes[9];
+  int terms = m.kind == kGgx ? 3 : 1;
+  for (int term = 0; term < terms; ++term) {
+    elongatedLobes(m, vectorAt(x, 3), 5, terms, term, lobes);
+    for (int k = 0; k < 5; ++k) whole += sgIntegral(lobes[k]);
+  }
+  y[1] = whole * x.v[10];
+  SphericalGaussian light = sphericalGaussian(vectorAt(x, 6), Real(1.0e4), x.v[10]);
+  y[2] = sgInnerProduct(lobes[2], light);
+}
