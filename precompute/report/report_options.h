@@ -24,6 +24,7 @@ struct ReportOptions {
   std::optional<float> metallic;          ///< of every material, with or without `roughnesses`
   glm::ivec2 size{480, 300};              ///< pixels
   CameraSpec camera;
+  std::vector<Light> lights;      ///< beside the scene's own
   int supersample = 2;            ///< supersample^2 shaded points a pixel, in the picture and in the reference alike
   int samples = 128;              ///< of the reference, light and BRDF sample pairs a pixel
   std::optional<float> exposure;  ///< absent: autoExposure() of each environment
@@ -41,6 +42,7 @@ struct ReportOptionTexts {
   std::string camera = "auto";
   std::string exposure = "auto";
   std::string toneMap = "neutral";
+  std::vector<std::string> lights;
   bool noShadows = false;
 };
 

@@ -36,6 +36,7 @@ struct ViewOptions {
   ToneMap toneMap = ToneMap::neutral;
   int supersample = 1;
   MaterialOverride materials;
+  std::vector<Light> lights;              ///< beside the scene's own
   bool shadows = true;
   bool background = true;
   DebugView debugView = DebugView::none;
@@ -58,6 +59,7 @@ struct ViewOptionTexts {
   std::string timings;
   std::string scene;
   std::optional<float> roughness, metallic;
+  std::vector<std::string> lights;
   bool headless = false, window = false, noShadows = false, noBackground = false, framesGiven = false;
 };
 

@@ -6,6 +6,7 @@
 //  * smooth reflection: the view's SG lobes; each takes the prefiltered environment times its visible fraction, and where a light's shadow
 //    differs from the lobe's, the difference on that light's share (exact SG product).
 //  * rough reflection: the BRDF itself at the lights and at the fixed lobes; SG lobes fit it poorly there.
+// The scene's own lights: shaders/stage/lamps.glsl.
 #include "shaders/lobe/specular.glsl"
 #include "shaders/lobe/sh.glsl"
 #include "shaders/lobe/display.glsl"
@@ -27,8 +28,6 @@ const float kRoughTo = 0.6;
 // Lobes broader than this see the vertex's visible fractions instead of the half-space picture of the SSDF.
 const float kBroadFrom = 4.0;
 const float kBroadTo = 16.0;
-// A punctual light's shadow edge is as sharp as the stored sphere resolves.
-const float kPunctualSharpness = 3000.0;
 
 struct Surface {
   vec3 position;
@@ -67,8 +66,6 @@ float horizonShare(Surface s, vec3 axis, float sharpness) {
 }
 
 bool shadowed() { return (uint(frame.counts.w) & kFlagShadows) != 0u; }
-
-float visibleFraction(float distance, float sharpness) { return shadowed() ? ssdfVisibleFraction(distance, sharpness) : 1.0; }
 
 float fixedVisibility(Transfer t, int j) { return shadowed() ? t.visibility[j >> 2][j & 3] : 1.0; }
 
@@ -124,6 +121,9 @@ vec3 lightMean(int l, vec3 axis, float sharpness, out float productSharpness) {
        / oneMinusExpOver(2.0 * sharpness);
 }
 
+float reflectance(Surface s, vec3 wi, float alphaT, float alphaB, out float fresnel);
+#include "shaders/stage/lamps.glsl"
+
 // Light that arrives through one reflection lobe.
 vec3 lobeRadiance(Surface s, Transfer t, vec3 axis, float sharpness, float broad) {
   float distance = ssdfAt(t, axis);
@@ -145,7 +145,7 @@ vec3 lobeRadiance(Surface s, Transfer t, vec3 axis, float sharpness, float broad
     }
   }
 #endif
-  return max(radiance, vec3(0.0)) * horizonShare(s, axis, sharpness);
+  return (max(radiance, vec3(0.0)) + lampsUnderLobe(s, t, axis, sharpness)) * horizonShare(s, axis, sharpness);
 }
 
 vec3 diffuseLight(Surface s, Transfer t) {
@@ -269,33 +269,6 @@ vec3 smoothReflection(Surface s, Transfer t, vec3 albedo) {
   return s.f0 * base * (albedo.x / max(baseWeight, 1.0e-6)) + edge * (albedo.y / max(edgeWeight, 1.0e-6));
 }
 
-vec3 punctualLight(Surface s, Transfer t, vec3 diffuse) {
-  vec3 sum = vec3(0.0);
-  for (int l = 0; l < frame.counts.y; ++l) {
-    PunctualLightBlock light = frame.punctualLights[l];
-    vec3 wi = -light.directionRange.xyz;
-    float attenuation = 1.0;
-    if (light.positionType.w > 0.5) {
-      vec3 towards = light.positionType.xyz - s.position;
-      float distance2 = max(dot(towards, towards), 1.0e-12);
-      wi = towards * inversesqrt(distance2);
-      float relative = distance2 * light.directionRange.w * light.directionRange.w;
-      attenuation = clamp(1.0 - relative * relative, 0.0, 1.0) / distance2;
-      if (light.positionType.w > 1.5) {
-        float angular = clamp(dot(light.directionRange.xyz, -wi) * light.cone.x + light.cone.y, 0.0, 1.0);
-        attenuation *= angular * angular;
-      }
-    }
-    float cosineIn = dot(s.n, wi);
-    if (cosineIn <= 0.0 || attenuation <= 0.0 || dot(s.ng, wi) <= 0.0) continue;
-    float fresnel;
-    float f = reflectance(s, wi, s.alphaT, s.alphaB, fresnel);
-    vec3 brdf = diffuse * (kOneOverPi * (1.0 - fresnel)) + f * (s.f0 * (1.0 - fresnel) + fresnel);
-    sum += light.intensity.rgb * brdf * (cosineIn * attenuation * visibleFraction(ssdfAt(t, wi), kPunctualSharpness));
-  }
-  return sum;
-}
-
 vec3 shade(Surface s, Transfer t) {
   float cosineOut = dot(s.n, s.wo);
   // Of an anisotropic surface the mean of both directions' (within .03 for strength up to .6).
@@ -306,5 +279,5 @@ vec3 shade(Surface s, Transfer t) {
   if (rough > 0.0) reflected += rough * roughReflection(s, t, albedo);
   vec3 radiance = reflected;
   if (largestOf(s.diffuse) > 0.0) radiance += s.diffuse * (1.0 - albedo.z) * kOneOverPi * diffuseLight(s, t);
-  return radiance + punctualLight(s, t, s.diffuse);
+  return radiance + lampLight(s, t, 1.0 - rough);
 }
