@@ -88,7 +88,8 @@ FN LightCap diskCap(IN(Vec3) towards, IN(Vec3) direction, IN(Real) radius) {
 FN Real capSharpness(IN(LightCap) cap) {
   if (cap.cosine < Real(0.0)) return Real(0.0);
   Real deficit = Real(0.5) * cap.sinSquared / (Real(1.0) + cap.cosine);
-  if (!(deficit > Real(1.0) / kMaxSharpness)) return isNotANumber(deficit) ? deficit : kMaxSharpness;
+  if (isNotANumber(deficit)) return deficit;
+  if (deficit < Real(0.01)) return deficit > Real(1.0) / kMaxSharpness ? Real(1.0) / deficit : kMaxSharpness;  // to e^-200
   return vmfSharpness(Real(1.0) - deficit, deficit);
 }
 
@@ -143,6 +144,7 @@ FN Real capMeanUnderLobe(IN(LightCap) cap, IN(Vec3) axis, IN(Real) sharpness) {
   Real versine2 = Real(2.0) * cap.sinSquared / (Real(1.0) + cap.cosine);  // (2 sin(s/2))^2
   Real chordCap = sqrt(versine2);
   Vec3 difference = axis - cap.axis;
+  Vec3 sum = axis + cap.axis;
   Real chord = min(sqrt(dot(difference, difference)), Real(2.0));
   Real b2 = l * versine2;
   Real r;
@@ -158,7 +160,7 @@ FN Real capMeanUnderLobe(IN(LightCap) cap, IN(Vec3) axis, IN(Real) sharpness) {
   Real a = root * chord;
   // Angles over chords, for the edge of a large cap.
   Real capExcess = atanQuadrant(sqrt(cap.sinSquared), cap.cosine) - chordCap;
-  Real excess = Real(2.0) * atanQuadrant(chord, sqrt(max(Real(0.0), (Real(2.0) - chord) * (Real(2.0) + chord)))) - chord;
+  Real excess = Real(2.0) * atanQuadrant(chord, sqrt(dot(sum, sum))) - chord;
   Real correction = b2 / (b2 + Real(4.0)) * root * (capExcess - excess);
   Real ratio;  // of the two erf over that of h
   if (h < Real(0.5)) {  // as the integral of the Gaussian between them: three Gauss points

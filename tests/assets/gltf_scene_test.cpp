@@ -456,28 +456,27 @@ TEST(GltfScene, CamerasAndLights) {
 }
 
 TEST(GltfScene, LightsWithASize) {
-  const auto loaded = [](const json& light) {
+  const auto with = [](const char* type, const json& area, auto use) {
     File file;
     file.triangle();
     file.root["extensionsUsed"] = {"KHR_lights_punctual", "CHIARO_lights_area"};
-    file.root["extensions"]["KHR_lights_punctual"]["lights"] = {light};
+    file.root["extensions"]["KHR_lights_punctual"]["lights"] = {
+        {{"type", type}, {"spot", json::object()}, {"extensions", {{"CHIARO_lights_area", area}}}}};
     file.node({{"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
-    return file;
+    return use(file);
   };
-  const auto sized = [&](const char* type, const json& area) {
-    return loaded({{"type", type}, {"extensions", {{"CHIARO_lights_area", area}}}});
-  };
-  const auto only = [&](const char* type, const json& area) { return sized(type, area).load().lights.at(0); };
+  const auto only = [&](const char* type, const json& area) { return with(type, area, [](File& file) { return file.load().lights.at(0); }); };
+  const auto refusal = [&](const char* type, const json& area) { return with(type, area, [](File& file) { return file.error(); }); };
   EXPECT_EQ(only("point", {{"radius", 0.25}}).type, LightType::sphere);
   EXPECT_EQ(only("point", {{"radius", 0.25}}).radius, 0.25f);
   EXPECT_EQ(only("point", {{"radius", 0}}).type, LightType::sphere);
   EXPECT_EQ(only("spot", {{"radius", 2}}).type, LightType::disk);
   EXPECT_EQ(only("directional", {{"angle", 0.5}}).angle, 0.5f);
   const std::string radius = "has a CHIARO_lights_area without a \"radius\" of 0 or more", angle = "without an \"angle\" between 0 and pi/2";
-  for (const json& area : {json::object(), json{{"radius", -1}}, json{{"radius", "1"}}, json{{"radius", 1e60}}, json{{"angle", 1}}, json(3)})
-    EXPECT_THAT(sized("point", area).error(), HasSubstr(radius)) << area;
-  for (const json& area : {json::object(), json{{"angle", -0.1}}, json{{"angle", 1.6}}, json{{"radius", 1}}})
-    EXPECT_THAT(sized("directional", area).error(), HasSubstr(angle)) << area;
+  for (const json& area : {json{{"radius", -1}}, json{{"radius", "1"}}, json{{"radius", 1e60}}, json{{"angle", 1}}, json(3)})
+    EXPECT_THAT(refusal("point", area), HasSubstr(radius)) << area;
+  for (const json& area : {json{{"angle", -0.1}}, json{{"angle", 1.6}}, json{{"radius", 1}}})
+    EXPECT_THAT(refusal("directional", area), HasSubstr(angle)) << area;
 }
 
 TEST(LightSpec, SaysWhatItMeans) {

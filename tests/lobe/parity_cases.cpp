@@ -459,12 +459,13 @@ void addAreaLights(Registry& r) {
     out.push_back(static_cast<float>(s));
     out.push_back(static_cast<float>(g.chance(0.7) ? std::sin(s) * g.uniform(-1, 1) : g.uniform(-1, 1)));
   });
-  Case under = CHIARO_CASE(capMeanUnderLobe, 6, 5, {{0, 1}, {1, 1}, {2, 3}}, "angular radius 1e-6..pi/2, sharpness 1e-3..1e6; mean over max(value, .05 of the most)",
+  // Where a sharp lobe crosses a wide light's edge, the angle between them (rounded to 1e-7) counts in units of the lobe's width: 1e-4.
+  Case under = CHIARO_CASE(capMeanUnderLobe, 6, 5, {{0, 1}, {1, 1}, {2, 3}}, "angular radius 1e-6..pi/2, sharpness 1e-3..1e6; mean over max(value, .05 of the most); edge of sharp lobes: 1e-4",
                            [](const float* in) {
                              const double most = std::min(1.0 / (3.14159 * std::sin(in[0]) * std::sin(in[0])), lobe64::vmfAmplitude(in[4]));
                              return std::max(1.0, most) * 0.05 / kFloor;
                            });
-  under.tolerance = 2e-5;
+  under.tolerance = 1e-4;
   r.add(std::move(under), [](Generator& g, auto& out) {
     const double sharpness = g.logUniform(1e-3, 1e6), s = g.logUniform(1e-6, 1.5707);
     out.push_back(static_cast<float>(s));

@@ -58,7 +58,8 @@ void expectIrradiance(const Light& light, glm::dvec3 normal, double expected, St
   const Estimate estimate = lampLight(surface, normal, {light}, nullptr, 1 << 15, 7, strategy);
   const double sigma = kPi * std::sqrt(estimate.varianceOfMean.x);
   EXPECT_LE(sigma, 0.01 * expected);
-  EXPECT_NEAR(kPi * estimate.mean.x, expected, 5.0 * sigma + 1e-5 * expected);
+  // 1e-4: what the BRDF's directions would add where they hit a small light less than once in all their number, so that no variance shows.
+  EXPECT_NEAR(kPi * estimate.mean.x, expected, 5.0 * sigma + 1e-4 * expected);
 }
 
 TEST(ReferenceLamp, IrradianceIsTheClosedForm) {
