@@ -188,7 +188,7 @@ ImageRgb windows() {
 }  // namespace
 
 const std::vector<std::string>& builtinEnvironmentNames() {
-  static const std::vector<std::string> names{"sunny", "overcast", "windows", "white"};
+  static const std::vector<std::string> names{"sunny", "overcast", "windows", "white", "black"};
   return names;
 }
 
@@ -198,7 +198,7 @@ void requireEnvironment(const std::string& nameOrPath) {
   std::error_code ignored;
   if (std::filesystem::exists(nameOrPath, ignored)) return;
   throw inputError(nameOrPath, "no such file, and no built-in environment of that name",
-                   "use sunny, overcast, windows, white, or a .hdr or .exr file");
+                   "use sunny, overcast, windows, white, black, or a .hdr or .exr file");
 }
 
 Environment loadEnvironment(const std::string& nameOrPath) {
@@ -207,6 +207,7 @@ Environment loadEnvironment(const std::string& nameOrPath) {
   if (nameOrPath == "overcast") return {nameOrPath, overcast()};
   if (nameOrPath == "windows") return {nameOrPath, windows()};
   if (nameOrPath == "white") return {nameOrPath, paint([](glm::dvec3) { return Look{glm::dvec3(1.0), 0}; })};
+  if (nameOrPath == "black") return {nameOrPath, paint([](glm::dvec3) { return Look{glm::dvec3(0.0), 0}; })};
   return {nameOrPath, readHdrImage(nameOrPath)};
 }
 

@@ -15,7 +15,7 @@ struct Environment {
   ImageRgb radiance;
 };
 
-/// Names of the built-in environments: "sunny", "overcast", "windows", and "white" (radiance 1 everywhere).
+/// Names of the built-in environments: "sunny", "overcast", "windows", "white" (radiance 1 everywhere) and "black" (none).
 const std::vector<std::string>& builtinEnvironmentNames();
 
 /// Throws Error (unreadableInput) when the name is neither built in nor that of a file. Called before long work.

@@ -23,7 +23,7 @@ constexpr int kDeepestNode = 512;
 const std::set<std::string> kSupported{"KHR_lights_punctual",   "KHR_materials_emissive_strength", "KHR_materials_anisotropy",
                                        "KHR_mesh_quantization", "KHR_texture_transform",           "CHIARO_radiance_transfer",
                                        "KHR_materials_ior",     "KHR_materials_specular",          "KHR_materials_clearcoat",
-                                       "CHIARO_materials_reflectance"};
+                                       "CHIARO_materials_reflectance", "CHIARO_lights_area"};
 
 std::string named(const std::string& kind, int index, const std::string& name) {
   return kind + " " + std::to_string(index) + (name.empty() ? "" : " (" + name + ")");
@@ -425,11 +425,31 @@ class SceneReader {
       light.innerConeAngle = static_cast<float>(gltfNumber(source.Get("spot"), "innerConeAngle", 0.0));
       light.outerConeAngle = static_cast<float>(gltfNumber(source.Get("spot"), "outerConeAngle", 0.785398163397448));
     }
+    if (source.Has("extensions") && source.Get("extensions").IsObject() && source.Get("extensions").Has("CHIARO_lights_area"))
+      readArea(source.Get("extensions").Get("CHIARO_lights_area"), named("light", index, name), light);
     requireSaneLight(light, named("light", index, name));
     const glm::mat4 pose = rigid(world, label);
     light.position = glm::vec3(pose[3]);
     light.direction = -glm::vec3(pose[2]);
     scene_.lights.push_back(std::move(light));
+  }
+
+  /// CHIARO_lights_area (docs/format.md).
+  void readArea(const tinygltf::Value& area, const std::string& label, Light& light) const {
+    const char* member = light.type == LightType::directional ? "angle" : "radius";
+    const bool given = area.IsObject() && area.Has(member) && area.Get(member).IsNumber();
+    const double size = given ? area.Get(member).GetNumberAsDouble() : -1.0;
+    const bool fits = light.type == LightType::directional ? size <= 1.5707964 : std::isfinite(static_cast<float>(size));
+    if (!(size >= 0.0) || !fits)
+      throw inputError(where_, label + " has a CHIARO_lights_area without " + (light.type == LightType::directional
+                           ? "an \"angle\" between 0 and pi/2" : "a \"radius\" of 0 or more"),
+                       "give it one, or leave the extension out");
+    if (light.type == LightType::directional) {
+      light.angle = static_cast<float>(size);
+    } else {
+      light.type = light.type == LightType::point ? LightType::sphere : LightType::disk;
+      light.radius = static_cast<float>(size);
+    }
   }
 
   void requireSaneLight(const Light& light, const std::string& label) const {

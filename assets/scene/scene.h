@@ -125,17 +125,23 @@ struct Camera {
   float farPlane = 1000.0f;
 };
 
-enum class LightType { directional, point, spot };
+enum class LightType { directional, point, spot, sphere, disk };
 
-/// KHR_lights_punctual.
+/// KHR_lights_punctual, and with CHIARO_lights_area (docs/format.md) lights that have a size. All are seen in reflections only.
+///  * directional: a disc of uniform radiance on the sky, of angular radius `angle`; 0 is a direction.
+///  * sphere: a point with a radius. From outside its irradiance is a point's at every distance; from inside it shines all around.
+///  * disk: faces `direction`, radiance intensity / (pi radius^2) towards the directions that the cones let through, nothing behind. Lambert's
+///    cosine makes it weaker off its axis, which KHR's spot is not, down to a radius of 0.
 struct Light {
   std::string name;
   LightType type = LightType::directional;
   glm::vec3 color{1.0f};
-  float intensity = 1.0f;                 ///< lux (directional), candela (point, spot)
+  float intensity = 1.0f;                 ///< lux on a surface that faces it (directional), candela (others; spot and disk: on the axis)
   float range = std::numeric_limits<float>::infinity();
-  float innerConeAngle = 0.0f;            ///< radians (spot)
+  float innerConeAngle = 0.0f;            ///< radians (spot, disk)
   float outerConeAngle = 0.785398163f;
+  float radius = 0.0f;                    ///< metres (sphere, disk)
+  float angle = 0.0f;                     ///< radians, 0 .. pi/2 (directional)
   glm::vec3 position{0.0f};
   glm::vec3 direction{0.0f, 0.0f, -1.0f};  ///< the way the light travels, unit
 };

@@ -159,12 +159,14 @@ class SceneWriter {
       const float scale = powerOfTwoOver(light.color);
       Json out = Json::object(), node = Json::object();
       if (!light.name.empty()) out["name"] = node["name"] = light.name;
-      out["type"] = light.type == LightType::point ? "point" : light.type == LightType::spot ? "spot" : "directional";
+      const bool round = light.type == LightType::point || light.type == LightType::sphere;
+      const bool coned = light.type == LightType::spot || light.type == LightType::disk;
+      out["type"] = round ? "point" : coned ? "spot" : "directional";
       out["color"] = list(light.color / scale);
       out["intensity"] = light.intensity * scale;
       if (light.type != LightType::directional && std::isfinite(light.range)) out["range"] = light.range;
-      if (light.type == LightType::spot)
-        out["spot"] = {{"innerConeAngle", light.innerConeAngle}, {"outerConeAngle", light.outerConeAngle}};
+      if (coned) out["spot"] = {{"innerConeAngle", light.innerConeAngle}, {"outerConeAngle", light.outerConeAngle}};
+      addArea(out, light);
       node["extensions"]["KHR_lights_punctual"]["light"] = lights.size();
       lights.push_back(std::move(out));
       addMatrix(node, poseOf(light));
@@ -177,6 +179,13 @@ class SceneWriter {
   }
 
  private:
+  void addArea(Json& out, const Light& light) {
+    const bool sized = light.type == LightType::sphere || light.type == LightType::disk;
+    if (!sized && !(light.type == LightType::directional && light.angle > 0.0f)) return;
+    use("CHIARO_lights_area");
+    out["extensions"]["CHIARO_lights_area"] = sized ? Json{{"radius", light.radius}} : Json{{"angle", light.angle}};
+  }
+
   static int wrap(Wrap mode) { return mode == Wrap::repeat ? 10497 : mode == Wrap::mirroredRepeat ? 33648 : 33071; }
 
   bool addTexture(Json& object, const char* key, int texture, const TextureTransform& transform) {

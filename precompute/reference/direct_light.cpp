@@ -3,21 +3,57 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
+
+#include "precompute/reference/lamp_sampler.h"
 
 namespace chiaro::reference {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-/// Draws and weighs directions for one surface point and viewer.
+/// The environment as a light that can be drawn from.
+class Sky {
+ public:
+  explicit Sky(const EnvironmentSampler& environment) : environment_(environment) {}
+  bool any() const { return environment_.anyLight(); }
+  glm::dvec3 sample(glm::dvec2 random) const { return environment_.sample(random); }
+  LampSampler::Seen at(glm::dvec3 wi) const {
+    const EnvironmentSampler::Light light = environment_.at(wi);
+    return {light.radiance, light.density, std::numeric_limits<double>::infinity()};
+  }
+
+ private:
+  const EnvironmentSampler& environment_;
+};
+
+class Lamp {
+ public:
+  Lamp(const Light& light, glm::dvec3 position) : sampler_(light, position) {}
+  bool any() const { return true; }
+  glm::dvec3 sample(glm::dvec2 random) const { return sampler_.sample(random); }
+  LampSampler::Seen at(glm::dvec3 wi) const { return sampler_.at(wi); }
+  const LampSampler& sampler() const { return sampler_; }
+
+ private:
+  LampSampler sampler_;
+};
+
+/// True where something hides what lies `distance` away along wi. A lamp may sit on a surface: its own does not hide it.
+bool hidden(const Surface& surface, glm::dvec3 wi, double distance, const RayScene& rays) {
+  const glm::vec3 position(surface.position);
+  const float offset = rays.surfaceOffset(position);
+  const glm::vec3 origin = position + offset * glm::vec3(surface.geometricNormal);
+  return rays.occluded(origin, glm::vec3(wi), 0.0f, std::isfinite(distance) ? static_cast<float>(distance) - 2.0f * offset : kInfinity);
+}
+
+/// Draws and weighs directions for one surface point, viewer and light.
+template <class Source>
 class LightGatherer {
  public:
-  LightGatherer(const Surface& surface, glm::dvec3 wo, const EnvironmentSampler& environment, const RayScene* rays,
-                Strategy strategy)
-      : surface_(surface), wo_(wo * surface.worldFromTangent), environment_(environment), rays_(rays) {
-    useEnvironment_ = environment.anyLight() && (strategy == Strategy::combined || strategy == Strategy::environment);
-    useBrdf_ = strategy != Strategy::environment;
+  LightGatherer(const Surface& surface, glm::dvec3 wo, const Source& light, const RayScene* rays, Strategy strategy)
+      : surface_(surface), wo_(wo * surface.worldFromTangent), light_(light), rays_(rays) {
+    useLight_ = light.any() && (strategy == Strategy::combined || strategy == Strategy::light);
+    useBrdf_ = strategy != Strategy::light;
     reflectionShare_ = strategy == Strategy::reflection ? 1.0
                        : strategy == Strategy::cosine   ? 0.0
                                                         : reflectionShare(surface.brdf, wo_);
@@ -28,8 +64,8 @@ class LightGatherer {
   /// One sample of the radiance towards the viewer.
   glm::dvec3 draw(const PointSet& points, std::uint32_t index) {
     glm::dvec3 sum(0.0);
-    if (useEnvironment_) {
-      const glm::dvec3 wi = environment_.sample(points.pair(index, 0));
+    if (useLight_) {
+      const glm::dvec3 wi = light_.sample(points.pair(index, 0));
       sum += contribution(wi, wi * surface_.worldFromTangent);
     }
     if (useBrdf_) {
@@ -52,10 +88,10 @@ class LightGatherer {
     if (!(glm::dot(surface_.interpolatedNormal, wi) > 0.0)) return none;
     const glm::dvec3 reflected = brdfTimesCosine(surface_.brdf, wo_, local);
     if (!(reflected.x + reflected.y + reflected.z > 0.0)) return none;
-    const EnvironmentSampler::Light light = environment_.at(wi);
+    const LampSampler::Seen light = light_.at(wi);
     const glm::dvec3 value = reflected * light.radiance;
     if (!(value.x + value.y + value.z > 0.0)) return none;
-    double density = useEnvironment_ ? light.density : 0.0;
+    double density = useLight_ ? light.density : 0.0;
     if (useBrdf_) {
       density +=
           reflectionShare_ * reflectionDensity(surface_.brdf, wo_, local) + (1.0 - reflectionShare_ - coatShare_) * cosineDensity(local);
@@ -64,58 +100,26 @@ class LightGatherer {
     if (!(density > 0.0)) return none;
     if (rays_ != nullptr) {
       ++rayCount_;
-      const glm::vec3 position(surface_.position);
-      const glm::vec3 origin = position + rays_->surfaceOffset(position) * glm::vec3(surface_.geometricNormal);
-      if (rays_->occluded(origin, glm::vec3(wi), 0.0f, kInfinity)) return none;
+      if (hidden(surface_, wi, light.distance, *rays_)) return none;
     }
     return value / density;
   }
 
   const Surface& surface_;
   glm::dvec3 wo_;  ///< in the tangent frame
-  const EnvironmentSampler& environment_;
+  const Source& light_;
   const RayScene* rays_;
-  double useEnvironment_ = 1.0;
+  bool useLight_ = true;
   bool useBrdf_ = true;
   double reflectionShare_ = 0.5;
   double coatShare_ = 0.0;
   std::uint64_t rayCount_ = 0;
 };
 
-/// Irradiance at normal incidence from one light, the unit direction towards it, and how far it is.
-struct Incident {
-  glm::dvec3 wi{0.0, 1.0, 0.0};
-  double distance = std::numeric_limits<double>::infinity();
-  double attenuation = 1.0;
-};
-
-Incident incidentFrom(const Light& light, glm::dvec3 position) {
-  Incident incident;
-  const glm::dvec3 axis = glm::normalize(glm::dvec3(light.direction));
-  if (light.type == LightType::directional) {
-    incident.wi = -axis;
-    return incident;
-  }
-  const glm::dvec3 offset = glm::dvec3(light.position) - position;
-  incident.distance = glm::length(offset);
-  incident.wi = offset / incident.distance;
-  incident.attenuation = 1.0 / (incident.distance * incident.distance);
-  const double reach = incident.distance / static_cast<double>(light.range);
-  incident.attenuation *= std::clamp(1.0 - reach * reach * reach * reach, 0.0, 1.0);
-  if (light.type == LightType::spot) {
-    const double inner = std::cos(static_cast<double>(light.innerConeAngle));
-    const double outer = std::cos(static_cast<double>(light.outerConeAngle));
-    const double edge = std::clamp((glm::dot(axis, -incident.wi) - outer) / std::max(0.001, inner - outer), 0.0, 1.0);
-    incident.attenuation *= edge * edge;
-  }
-  return incident;
-}
-
-}  // namespace
-
-Estimate environmentLight(const Surface& surface, glm::dvec3 wo, const EnvironmentSampler& environment, const RayScene* rays,
-                          int samples, std::uint32_t seed, Strategy strategy) {
-  LightGatherer gatherer(surface, wo, environment, rays, strategy);
+template <class Source>
+Estimate estimate(const Surface& surface, glm::dvec3 wo, const Source& light, const RayScene* rays, int samples, std::uint32_t seed,
+                  Strategy strategy) {
+  LightGatherer<Source> gatherer(surface, wo, light, rays, strategy);
   // Few, as larger sets are more even; enough to know their variance.
   const int sets = std::min(samples, std::clamp(samples / 16, 4, 8));
   const int setSize = (samples + sets - 1) / sets;
@@ -136,26 +140,40 @@ Estimate environmentLight(const Surface& surface, glm::dvec3 wo, const Environme
   return estimate;
 }
 
-Estimate punctualLight(const Surface& surface, glm::dvec3 wo, const std::vector<Light>& lights, const RayScene* rays) {
+Estimate pointLight(const Surface& surface, glm::dvec3 wo, const LampSampler& lamp, const RayScene* rays) {
   Estimate estimate;
-  for (const Light& light : lights) {
-    const Incident incident = incidentFrom(light, surface.position);
-    if (!(incident.attenuation > 0.0 && glm::dot(surface.interpolatedNormal, incident.wi) > 0.0)) continue;
-    const glm::dvec3 reflected =
-        brdfTimesCosine(surface.brdf, wo * surface.worldFromTangent, incident.wi * surface.worldFromTangent);
-    if (!(reflected.x + reflected.y + reflected.z > 0.0)) continue;
-    if (rays != nullptr) {
-      ++estimate.rays;
-      const glm::vec3 position(surface.position);
-      const float offset = rays->surfaceOffset(position);
-      const glm::vec3 origin = position + offset * glm::vec3(surface.geometricNormal);
-      // A lamp may sit on a surface: its own does not hide it.
-      const auto reach = static_cast<float>(incident.distance) - 2.0f * offset;
-      if (rays->occluded(origin, glm::vec3(incident.wi), 0.0f, reach)) continue;
-    }
-    estimate.mean += reflected * (incident.attenuation * static_cast<double>(light.intensity)) * glm::dvec3(light.color);
+  const glm::dvec3 wi = lamp.direction();
+  if (!(glm::dot(surface.interpolatedNormal, wi) > 0.0)) return estimate;
+  const glm::dvec3 light =
+      brdfTimesCosine(surface.brdf, wo * surface.worldFromTangent, wi * surface.worldFromTangent) * lamp.irradiance();
+  if (!(light.x + light.y + light.z > 0.0)) return estimate;
+  if (rays != nullptr) {
+    ++estimate.rays;
+    if (hidden(surface, wi, lamp.distance(), *rays)) return estimate;
   }
+  estimate.mean = light;
   return estimate;
+}
+
+}  // namespace
+
+Estimate environmentLight(const Surface& surface, glm::dvec3 wo, const EnvironmentSampler& environment, const RayScene* rays,
+                          int samples, std::uint32_t seed, Strategy strategy) {
+  return estimate(surface, wo, Sky(environment), rays, samples, seed, strategy);
+}
+
+Estimate lampLight(const Surface& surface, glm::dvec3 wo, const std::vector<Light>& lights, const RayScene* rays, int samples,
+                   std::uint32_t seed, Strategy strategy) {
+  Estimate all;
+  for (std::size_t l = 0; l < lights.size(); ++l) {
+    const Lamp lamp(lights[l], surface.position);
+    const Estimate one = lamp.sampler().isPoint() ? pointLight(surface, wo, lamp.sampler(), rays)
+                                                  : estimate(surface, wo, lamp, rays, samples, hashWords(seed, 1000u + static_cast<std::uint32_t>(l)), strategy);
+    all.mean += one.mean;
+    all.varianceOfMean += one.varianceOfMean;
+    all.rays += one.rays;
+  }
+  return all;
 }
 
 }  // namespace chiaro::reference

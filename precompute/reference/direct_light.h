@@ -12,7 +12,7 @@
 namespace chiaro::reference {
 
 /// Which densities to draw from; everything but `combined` is for tests of it.
-enum class Strategy { combined, environment, reflection, cosine };
+enum class Strategy { combined, light, reflection, cosine };
 
 struct Estimate {
   glm::dvec3 mean{0.0};  ///< radiance towards the viewer, W/(m^2 sr)
@@ -30,7 +30,8 @@ struct Estimate {
 Estimate environmentLight(const Surface& surface, glm::dvec3 wo, const EnvironmentSampler& environment, const RayScene* rays,
                           int samples, std::uint32_t seed, Strategy strategy = Strategy::combined);
 
-/// Directional, point and spot lights as KHR_lights_punctual defines them; exact but for rounding.
-Estimate punctualLight(const Surface& surface, glm::dvec3 wo, const std::vector<Light>& lights, const RayScene* rays);
+/// The scene's lights. Those without a size are exact but for rounding; each of the others takes `samples` pairs as above.
+Estimate lampLight(const Surface& surface, glm::dvec3 wo, const std::vector<Light>& lights, const RayScene* rays, int samples,
+                   std::uint32_t seed, Strategy strategy = Strategy::combined);
 
 }  // namespace chiaro::reference

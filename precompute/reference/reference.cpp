@@ -112,9 +112,10 @@ class Renderer {
         const RayScene* occluders = settings_.shadows ? &rays_ : nullptr;
         const Estimate sky =
             environmentLight(surface, wo, environment_, occluders, samples, hashWords(seed, static_cast<std::uint32_t>(layer)));
-        const Estimate lamps = punctualLight(surface, wo, scene_.lights, occluders);
+        const Estimate lamps =
+            lampLight(surface, wo, scene_.lights, occluders, samples, hashWords(seed, static_cast<std::uint32_t>(layer)));
         seen.radiance += weight * (sky.mean + lamps.mean + surface.emission);
-        seen.variance += weight * weight * sky.varianceOfMean;
+        seen.variance += weight * weight * (sky.varianceOfMean + lamps.varianceOfMean);
         seen.rays += sky.rays + lamps.rays;
       }
       transmitted *= 1.0 - surface.opacity;

@@ -1,7 +1,7 @@
 #pragma once
 /// The truth beside every picture: direct lighting by brute force, no spherical Gaussian and no SSDF in it.
 ///
-///   Lo(x, wo) = integral over the sphere of f(wi, wo) max(n.wi, 0) V(x, wi) L(wi) dwi + emission + punctual lights
+///   Lo(x, wo) = integral over the sphere of f(wi, wo) max(n.wi, 0) V(x, wi) L(wi) dwi + emission + the scene's lights
 ///
 /// f is that of reference/brdf.h; V is traced with Embree.
 
@@ -17,7 +17,7 @@ namespace chiaro {
 struct ReferenceSettings {
   int width = 640;
   int height = 480;
-  int samplesPerPixel = 256;       ///< light/BRDF sample pairs a pixel (multiple importance sampling)
+  int samplesPerPixel = 256;       ///< light/BRDF sample pairs a pixel and light (multiple importance sampling)
   int pixelGrid = 1;               ///< pixelGrid^2 primary rays at the centres of a grid over the pixel (1: pixel centre)
   glm::mat3 worldFromEnvironment{1.0f};
   bool shadows = true;             ///< false: V = 1 above the horizon

@@ -91,7 +91,8 @@ ExitCode report(int argc, char** argv) {
   finishReportOptions(options, texts);
   catchInterrupts();
 
-  const BakedScene baked = readBakedScene(options.scene);
+  BakedScene baked = readBakedScene(options.scene);
+  baked.scene.lights.insert(baked.scene.lights.end(), options.lights.begin(), options.lights.end());
   if (const std::string left = leftOut(baked.scene); !left.empty() && !options.quiet)
     std::fprintf(stderr, "chiaro-report: warning: %s: %s, in the reference all of them\n", options.scene.c_str(), left.c_str());
   ProgressBar bar(progressStyle(options.quiet));

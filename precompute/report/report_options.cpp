@@ -7,6 +7,7 @@
 #include "assets/builtin/environment.h"
 #include "assets/error.h"
 #include "assets/file.h"
+#include "assets/scene/light_spec.h"
 #include "assets/scene/material_override.h"
 
 namespace chiaro {
@@ -76,6 +77,9 @@ void declareReportOptions(CLI::App& app, ReportOptions& options, ReportOptionTex
                  "Light: " + builtinNames() + ", or an .hdr or .exr file. May be repeated. Default: sunny, overcast and windows")
       ->type_name("NAME|FILE")
       ->allow_extra_args(false);
+  app.add_option("--light", texts.lights, "Another light beside the scene's own, as for chiaro-view. May be repeated")
+      ->type_name("SPEC")
+      ->allow_extra_args(false);
   app.add_option("-r,--roughness", options.roughnesses,
                  "Perceptual roughness of every material, 0 to 1. May be repeated: one comparison each")
       ->type_name("R")
@@ -117,6 +121,7 @@ void finishReportOptions(ReportOptions& options, const ReportOptionTexts& texts)
   if (options.environments.empty()) options.environments = {"sunny", "overcast", "windows"};
   options.size = sizeFrom(texts.size);
   options.camera = parseCameraSpec(texts.camera);
+  for (const auto& text : texts.lights) options.lights.push_back(parseLightSpec(text));
   options.exposure = exposureFrom(texts.exposure);
   options.toneMap = toneMapFromName(texts.toneMap);
   options.shadows = !texts.noShadows;

@@ -25,6 +25,7 @@ struct ReportOptions {
   std::optional<float> metallic;          ///< of every material, with or without `roughnesses`
   glm::ivec2 size{480, 300};              ///< pixels
   CameraSpec camera;
+  std::vector<Light> lights;      ///< beside the scene's own
   int supersample = 2;            ///< supersample^2 shaded points a pixel, in the picture and in the reference alike
   int samples = 128;              ///< of the reference, light and BRDF sample pairs a pixel
   std::optional<float> exposure;  ///< absent: autoExposure() of each environment
@@ -46,6 +47,7 @@ struct ReportOptionTexts {
   std::string exposure = "auto";
   std::string toneMap = "neutral";
   std::string model;
+  std::vector<std::string> lights;
   bool noShadows = false;
 };
 

@@ -101,6 +101,7 @@ std::string reportJson(const ReportFacts& facts, const ReportOptions& options, c
   json["samples"] = options.samples;
   json["shadows"] = options.shadows;
   json["metallic"] = number(options.metallic);
+  json["lights"] = options.lights.size();
   json["tone_map"] = facts.toneMap;
   json["camera"] = {{"name", comparisons.camera.name},
                     {"eye",

@@ -27,11 +27,25 @@ glm::mat4 projectionOf(const Camera& camera, float aspect) {
   return glm::ortho(-right, right, -up, up, camera.nearPlane, camera.farPlane);
 }
 
+/// Numbers of shaders/stage/lamps.glsl.
+float typeNumber(LightType type) {
+  switch (type) {
+    case LightType::directional: return 0.0f;
+    case LightType::point:
+    case LightType::sphere: return 1.0f;
+    case LightType::spot: return 2.0f;
+    case LightType::disk: return 3.0f;
+  }
+  return 0.0f;
+}
+
 PunctualLightBlock blockOf(const Light& light) {
   PunctualLightBlock block;
-  block.positionType = glm::vec4(light.position, static_cast<float>(light.type));
+  block.positionType = glm::vec4(light.position, typeNumber(light.type));
   block.directionRange = glm::vec4(light.direction, std::isfinite(light.range) && light.range > 0 ? 1.0f / light.range : 0.0f);
-  block.intensity = glm::vec4(light.color * light.intensity, 0.0f);
+  const bool sized = light.type == LightType::sphere || light.type == LightType::disk;
+  const float size = light.type == LightType::directional ? light.angle : sized ? light.radius : 0.0f;
+  block.intensity = glm::vec4(light.color * light.intensity, size);
   // KHR_lights_punctual: clamp(cos * scale + offset)^2 between the outer and the inner cone.
   const float cosOuter = std::cos(light.outerConeAngle);
   const float scale = 1.0f / std::max(std::cos(light.innerConeAngle) - cosOuter, 1e-3f);
@@ -83,8 +97,8 @@ struct Renderer::Impl {
   RenderSettings last;
   bool drawn = false;
 
-  explicit Impl(const BakedScene& baked) : scene(baked), lights(baked.scene.lights) {
-    if (lights.size() > kMaxPunctualLights) lights.resize(kMaxPunctualLights);
+  explicit Impl(const BakedScene& baked) : scene(baked) {
+    setLights(baked.scene.lights);
     build(0);
     backgroundProgram =
         gl::Program::load({{GL_VERTEX_SHADER, "shaders/stage/fullscreen.vert"}, {GL_FRAGMENT_SHADER, "shaders/stage/background.frag"}});
@@ -113,6 +127,10 @@ struct Renderer::Impl {
     shadeProgram = gl::Program::load({{GL_VERTEX_SHADER, "shaders/stage/mesh.vert"}, {GL_FRAGMENT_SHADER, "shaders/stage/shade.frag"}}, defines);
     built = features;
     builtLobes = lobes;
+  }
+
+  void setLights(const std::vector<Light>& all) {
+    lights.assign(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(all.size(), kMaxPunctualLights)));
   }
 
   void resize(int width, int height, int supersample) {
@@ -305,6 +323,7 @@ Renderer::Renderer(Renderer&&) noexcept = default;
 Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 
 void Renderer::setEnvironment(const SgEnvironment& environment) { impl_->environment.emplace(environment); }
+void Renderer::setLights(const std::vector<Light>& lights) { impl_->setLights(lights); }
 void Renderer::setMaterials(const std::vector<Material>& materials) { impl_->scene.setMaterials(materials); }
 
 void Renderer::render(const Camera& camera, const RenderSettings& settings) {

@@ -49,6 +49,8 @@ class Renderer {
   Renderer& operator=(Renderer&&) noexcept;
 
   void setEnvironment(const SgEnvironment& environment);
+  /// In place of the scene's own, the first 32 of them. May change every frame at no other cost than this upload.
+  void setLights(const std::vector<Light>& lights);
   /// Material parameters may change every frame at no other cost than this upload; count and textures as in the scene. The first time
   /// that a model or a coat comes in which no material had before costs a compilation, and a model its table.
   void setMaterials(const std::vector<Material>& materials);

@@ -39,6 +39,51 @@ void drawLight(PanelState& state, PanelActions& actions) {
   ImGui::Checkbox("background", &state.background);
 }
 
+/// Azimuth and elevation of where the light comes from.
+bool drawDirection(Light& light) {
+  const glm::vec3 from = -light.direction;
+  float azimuth = std::atan2(from.x, from.z), elevation = std::asin(std::clamp(from.y, -1.0f, 1.0f));
+  const bool turned = ImGui::SliderAngle("azimuth", &azimuth, -180.0f, 180.0f);
+  if (!(ImGui::SliderAngle("elevation", &elevation, -90.0f, 90.0f) || turned)) return false;
+  light.direction = -glm::vec3(std::sin(azimuth) * std::cos(elevation), std::sin(elevation), std::cos(azimuth) * std::cos(elevation));
+  return true;
+}
+
+bool drawLamp(Light& light, float sceneSize) {
+  bool changed = false;
+  const bool sun = light.type == LightType::directional, coned = light.type == LightType::spot || light.type == LightType::disk;
+  if (!sun) changed |= ImGui::DragFloat3("position", &light.position.x, 0.002f * sceneSize, 0.0f, 0.0f, "%.3f");
+  if (sun || coned) changed |= drawDirection(light);
+  if (sun) changed |= ImGui::SliderAngle("angular radius", &light.angle, 0.0f, 90.0f, "%.2f deg");
+  if (light.type == LightType::sphere || light.type == LightType::disk)
+    changed |= ImGui::DragFloat("radius", &light.radius, 0.0005f * sceneSize, 0.0f, sceneSize, "%.4f");
+  changed |= ImGui::DragFloat(sun ? "lux" : "candela", &light.intensity, 0.01f * std::max(light.intensity, 0.1f), 0.0f, 1e6f, "%.4g");
+  changed |= ImGui::ColorEdit3("colour", &light.color.x, ImGuiColorEditFlags_Float | ImGuiColorEditFlags_HDR);
+  // A typed value may leave its range.
+  light.angle = std::clamp(light.angle, 0.0f, 1.57079637f);
+  light.radius = std::max(light.radius, 0.0f);
+  light.intensity = std::max(light.intensity, 0.0f);
+  light.color = glm::max(light.color, glm::vec3(0.0f));
+  return changed;
+}
+
+void drawLamps(PanelState& state, PanelActions& actions) {
+  if (state.lights.empty() || !ImGui::CollapsingHeader("Lights of the scene", ImGuiTreeNodeFlags_DefaultOpen)) return;
+  static const char* const kKinds[] = {"sun", "point", "spot", "sphere", "disk"};
+  ImGui::PushID("lights");
+  for (std::size_t i = 0; i < state.lights.size(); ++i) {
+    auto& light = state.lights[i];
+    ImGui::PushID(static_cast<int>(i));
+    if (ImGui::TreeNodeEx("light", ImGuiTreeNodeFlags_None, "%zu  %s %s", i, kKinds[static_cast<std::size_t>(light.type)], light.name.c_str())) {
+      actions.lightsChanged |= drawLamp(light, state.sceneSize);
+      ImGui::TreePop();
+    }
+    ImGui::PopID();
+  }
+  ImGui::PopID();
+  actions.copyLights = ImGui::Button("Copy as --light");
+}
+
 void drawPicture(PanelState& state, PanelActions& actions) {
   if (!ImGui::CollapsingHeader("Picture", ImGuiTreeNodeFlags_DefaultOpen)) return;
   ImGui::Checkbox("automatic exposure", &state.autoExposure);
@@ -154,6 +199,7 @@ PanelActions drawPanel(PanelState& state) {
   if (ImGui::Begin("Chiaro")) {
     ImGui::PushItemWidth(14.0f * unit);
     drawLight(state, actions);
+    drawLamps(state, actions);
     drawPicture(state, actions);
     drawCamera(state, actions);
     drawMaterials(state, actions);

@@ -43,6 +43,8 @@ struct PanelState {
   bool continuous = false;                ///< draw all the time, to watch the frame time
   // scene
   std::vector<Material> materials;
+  std::vector<Light> lights;              ///< the file's and those of the command line
+  float sceneSize = 1.0f;                 ///< metres, for how fast a dragged light moves
   std::vector<std::string> cameras;       ///< of the file
   float verticalFovDegrees = 40.0f;
   // files
@@ -60,6 +62,8 @@ struct PanelActions {
   std::optional<std::size_t> camera;       ///< chosen, of PanelState::cameras
   bool materialsChanged = false;
   bool resetMaterials = false;
+  bool lightsChanged = false;
+  bool copyLights = false;
   bool fovChanged = false;
   bool frameScene = false;
   bool copyCamera = false;

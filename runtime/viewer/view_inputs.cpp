@@ -12,13 +12,15 @@ namespace chiaro {
 
 double secondsNow() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
-LoadedScene loadForView(const std::filesystem::path& path, const MaterialOverride& materials) {
+LoadedScene loadForView(const std::filesystem::path& path, const MaterialOverride& materials, const std::vector<Light>& lights) {
   const double start = secondsNow();
   LoadedScene loaded;
   loaded.path = path;
   loaded.baked = readBakedScene(path);
   nameDefaultMaterial(loaded.baked.scene);
   overrideMaterials(loaded.baked.scene, materials);
+  auto& all = loaded.baked.scene.lights;
+  all.insert(all.end(), lights.begin(), lights.end());
   std::error_code ignored;
   loaded.fileBytes = std::filesystem::file_size(path, ignored);
   loaded.seconds = secondsNow() - start;

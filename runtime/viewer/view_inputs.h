@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "assets/scene/material_override.h"
 #include "assets/transfer/transfer.h"
@@ -18,8 +19,8 @@ struct LoadedScene {
   double seconds = 0.0;
 };
 
-/// Reads and overrides. Throws Error (unreadableInput).
-LoadedScene loadForView(const std::filesystem::path& path, const MaterialOverride& materials);
+/// Reads, overrides and adds lights behind the file's own. Throws Error (unreadableInput).
+LoadedScene loadForView(const std::filesystem::path& path, const MaterialOverride& materials, const std::vector<Light>& lights);
 
 /// One line on standard error when the renderer will leave something of the scene out.
 void warnOfLeftOut(const LoadedScene& scene);

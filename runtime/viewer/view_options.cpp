@@ -10,6 +10,7 @@
 #include "assets/builtin/environment.h"
 #include "assets/error.h"
 #include "assets/file.h"
+#include "assets/scene/light_spec.h"
 
 namespace chiaro {
 namespace {
@@ -81,6 +82,11 @@ void declareViewOptions(CLI::App& app, ViewOptions& options, ViewOptionTexts& te
       ->type_name("NAME|FILE")
       ->allow_extra_args(false);
   app.add_option("--rotate-environment-deg", options.rotateEnvironmentDegrees, "Turn the environment about +Y")->type_name("A");
+  app.add_option("--light", texts.lights,
+                 "Another light beside the scene's own, such as sphere,at=X,Y,Z,radius=R,intensity=R,G,B: sun, point, spot, sphere or disk with "
+                 "at, direction or target, radius, angle-deg, intensity, cone-deg, range. May be repeated")
+      ->type_name("SPEC")
+      ->allow_extra_args(false);
 
   const std::string view = "View";
   app.add_option("--size", texts.size, "Picture or window size in pixels")->type_name("WxH")->capture_default_str()->group(view);
@@ -138,6 +144,7 @@ void finishViewOptions(ViewOptions& options, const ViewOptionTexts& texts) {
   options.materials = {texts.roughness, texts.metallic, modelFromOption(texts.model)};
   requireLobes(options.lobes);
   options.animation = materialAnimationFromName(texts.animate);
+  for (const auto& text : texts.lights) options.lights.push_back(parseLightSpec(text));
   for (const auto& [value, option] : {std::pair{texts.roughness, "--roughness"}, std::pair{texts.metallic, "--metallic"}})
     if (value && !(*value >= 0.0f && *value <= 1.0f)) throw usageError(option, "must lie between 0 and 1", "give a number such as 0.4");
   if (options.supersample < 1 || options.supersample > 8) throw usageError("--supersample", "must lie between 1 and 8", "give a number such as 2");

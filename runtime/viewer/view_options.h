@@ -37,6 +37,7 @@ struct ViewOptions {
   ToneMap toneMap = ToneMap::neutral;
   int supersample = 1;
   MaterialOverride materials;
+  std::vector<Light> lights;              ///< beside the scene's own
   bool shadows = true;
   bool background = true;
   bool energyCompensation = false;
@@ -64,6 +65,7 @@ struct ViewOptionTexts {
   std::optional<float> roughness, metallic;
   std::string model;
   std::string animate = "none";
+  std::vector<std::string> lights;
   bool headless = false, window = false, noShadows = false, noBackground = false, framesGiven = false;
 };
 

@@ -44,6 +44,7 @@ std::string timingsJson(const ViewOptions& options, const LoadedScene& scene, co
   json["environment"] = environment.name;
   json["environment_rotation_deg"] = options.rotateEnvironmentDegrees;
   json["environment_lights"] = environment.light.lights.size();
+  json["lights"] = geometry.lights.size();
   json["exposure"] = settings.exposure;
   json["bytes"] = {{"file", scene.fileBytes},
                    {"gpu", gpuBytes},
@@ -136,7 +137,7 @@ void savePicture(Renderer& renderer, const std::filesystem::path& path) {
 }
 
 void viewHeadless(const ViewOptions& options) {
-  const LoadedScene scene = loadForView(options.scene, options.materials);
+  const LoadedScene scene = loadForView(options.scene, options.materials, options.lights);
   const Camera camera = viewCamera(options, scene.baked.scene);
   gl::HeadlessContext context;
   const PreparedEnvironment environment = prepareForView(options.environments.front(), options.threads);

@@ -16,6 +16,7 @@
 #include "assets/builtin/environment.h"
 #include "assets/error.h"
 #include "assets/scene/camera_spec.h"
+#include "assets/scene/light_spec.h"
 #include "runtime/viewer/orbit_camera.h"
 #include "runtime/viewer/panel.h"
 #include "runtime/viewer/preview.h"
@@ -58,6 +59,8 @@ PanelState panelFor(const ViewOptions& options, const LoadedScene& loaded) {
   const GlFacts facts = glFacts("window");
   state.driverLine = facts.renderer + ", OpenGL " + facts.version;
   state.materials = loaded.baked.scene.materials;
+  state.lights = loaded.baked.scene.lights;
+  state.sceneSize = boundsOf(loaded.baked.scene).diagonal();
   state.sceneLine = sceneLine(loaded);
   for (const auto& camera : loaded.baked.scene.cameras) state.cameras.push_back(camera.name);
   return state;
@@ -84,7 +87,7 @@ class InteractiveView {
  public:
   explicit InteractiveView(const ViewOptions& options)
       : options_(options),
-        loaded_(loadForView(options.scene, options.materials)),
+        loaded_(loadForView(options.scene, options.materials, options.lights)),
         orbit_(viewCamera(options, loaded_.baked.scene), boundsOf(loaded_.baked.scene)),
         window_(options.size, titleOf(options.scene)),
         renderer_(std::make_unique<Renderer>(loaded_.baked)),
@@ -170,6 +173,16 @@ class InteractiveView {
       renderer_->setMaterials(state_.materials);
       stale_ = true;
     }
+    if (actions.lightsChanged) {
+      renderer_->setLights(state_.lights);
+      stale_ = true;
+    }
+    if (actions.copyLights) {
+      std::string text;
+      for (const auto& light : state_.lights) text += (text.empty() ? "--light " : " --light ") + lightSpec(light);
+      window_.copyToClipboard(text);
+      say("copied " + text);
+    }
     if (actions.savePicture) saveWanted_ = true;
   }
 
@@ -234,7 +247,7 @@ class InteractiveView {
       }
       case DroppedKind::scene:
         if (pendingScene_.valid()) complain(path.string() + ": another scene is being loaded: drop it again when it is there");
-        else pendingScene_ = std::async(std::launch::async, loadForView, path, options_.materials);
+        else pendingScene_ = std::async(std::launch::async, loadForView, path, options_.materials, options_.lights);
         break;
       case DroppedKind::other:
         complain(path.string() + ": neither an environment nor a baked scene: drop an .hdr, .exr or .glb");
@@ -271,6 +284,8 @@ class InteractiveView {
     const glm::ivec2 size = glm::max(window_.framebufferSize(), glm::ivec2(1));
     orbit_ = OrbitCamera(defaultCamera(loaded_.baked.scene, static_cast<float>(size.x) / static_cast<float>(size.y)), boundsOf(loaded_.baked.scene));
     state_.materials = loaded_.baked.scene.materials;
+    state_.lights = loaded_.baked.scene.lights;
+    state_.sceneSize = boundsOf(loaded_.baked.scene).diagonal();
     state_.cameras.clear();
     for (const auto& camera : loaded_.baked.scene.cameras) state_.cameras.push_back(camera.name);
     state_.sceneLine = sceneLine(loaded_);
@@ -345,7 +360,7 @@ class InteractiveView {
 void viewInteractive(const ViewOptions& options) { InteractiveView(options).run(); }
 
 void viewInWindow(const ViewOptions& options) {
-  const LoadedScene scene = loadForView(options.scene, options.materials);
+  const LoadedScene scene = loadForView(options.scene, options.materials, options.lights);
   const Camera camera = viewCamera(options, scene.baked.scene);
   Window window(options.size, titleOf(options.scene));
   const PreparedEnvironment environment = prepareForView(options.environments.front(), options.threads);

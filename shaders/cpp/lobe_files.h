@@ -5,6 +5,7 @@
 #include "shaders/lobe/ssdf.glsl"
 #include "shaders/lobe/prefiltered.glsl"
 #include "shaders/lobe/cosine.glsl"
+#include "shaders/lobe/area_light.glsl"
 #include "shaders/lobe/warp_choice.glsl"
 #include "shaders/lobe/warp.glsl"
 #include "shaders/lobe/octahedral.glsl"

@@ -121,13 +121,11 @@ FN Real vmfMeanCosineSlope(IN(Real) l) {
   return Real(1.0) / (l * l) - Real(4.0) * e / (oneMinusE * oneMinusE);
 }
 
-// The sharpness whose mean cosine is `meanCosine`, in [0, 1); Banerjee's start and three Newton steps (formula error 1e-9).
-// 1 gives +inf; outside [0, 1] gives NaN. Above 1/2 the steps solve for 1 - A, which is where the accuracy is.
-FN Real vmfSharpnessFromMeanCosine(IN(Real) meanCosine) {
-  Real r = meanCosine;
-  Real deficit = Real(1.0) - r;
+// The sharpness whose mean cosine is r in [0, 1), with deficit = 1 - r passed apart because it may be known better; Banerjee's start and three
+// Newton steps (formula error 1e-9). 1 gives +inf; outside [0, 1] gives NaN. Above 1/2 the steps solve for 1 - A, which is where the accuracy is.
+FN Real vmfSharpness(IN(Real) r, IN(Real) deficit) {
   if (r < Real(0.0) || r > Real(1.0)) return notANumber();
-  if (r == Real(1.0)) return positiveInfinity();
+  if (deficit == Real(0.0)) return positiveInfinity();
   Real l = r * (Real(3.0) - r * r) / (deficit * (Real(1.0) + r));
   for (int i = 0; i < 3; ++i) {
     Real excess = r < Real(0.5) ? vmfMeanCosine(l) - r : deficit - oneMinusMeanCosine(l);
@@ -135,6 +133,8 @@ FN Real vmfSharpnessFromMeanCosine(IN(Real) meanCosine) {
   }
   return l;
 }
+
+FN Real vmfSharpnessFromMeanCosine(IN(Real) meanCosine) { return vmfSharpness(meanCosine, Real(1.0) - meanCosine); }
 
 // Convolution of `g` with the zonal kernel `kernel` (its axis is not read), as an SG about g.axis whose integral is the
 // product of both integrals, exactly. Sharpness: first-moment rule (mean cosines multiply) when the broader lobe is below 3,

@@ -12,9 +12,9 @@ struct SgLightBlock {
 };
 
 struct PunctualLightBlock {
-  vec4 positionType;    // world position; w: 0 directional, 1 point, 2 spot
+  vec4 positionType;    // world position; w: 0 sun, 1 point or sphere, 2 spot, 3 disk
   vec4 directionRange;  // unit, the way the light travels; w: 1 / range, 0 for none
-  vec4 intensity;       // rgb: lux or candela; w unused
+  vec4 intensity;       // rgb: lux or candela; w: radius, metres, or of a sun angular radius, radians
   vec4 cone;            // x: scale, y: offset of KHR_lights_punctual's angular attenuation
 };
 

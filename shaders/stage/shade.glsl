@@ -6,6 +6,7 @@
 //  * smooth reflection: the view's SG lobes; each takes the prefiltered environment times its visible fraction, and where a light's shadow
 //    differs from the lobe's, the difference on that light's share (exact SG product).
 //  * rough reflection: the BRDF itself at the lights and at the fixed lobes; SG lobes fit it poorly there.
+// The scene's own lights: shaders/stage/lamps.glsl.
 #ifndef REFLECTANCE_MODELS
 #define REFLECTANCE_MODELS 0
 #define CLEARCOAT 0
@@ -38,8 +39,6 @@ const float kModelRoughTo = 0.65;
 // Lobes broader than this see the vertex's visible fractions instead of the half-space picture of the SSDF.
 const float kBroadFrom = 4.0;
 const float kBroadTo = 16.0;
-// A punctual light's shadow edge is as sharp as the stored sphere resolves.
-const float kPunctualSharpness = 3000.0;
 
 struct Surface {
   vec3 position;
@@ -87,8 +86,6 @@ float horizonShare(Surface s, vec3 axis, float sharpness) {
 
 bool shadowed() { return (uint(frame.counts.w) & kFlagShadows) != 0u; }
 bool energyCompensation() { return (uint(frame.counts.w) & kFlagEnergyCompensation) != 0u; }
-
-float visibleFraction(float distance, float sharpness) { return shadowed() ? ssdfVisibleFraction(distance, sharpness) : 1.0; }
 
 float fixedVisibility(Transfer t, int j) { return shadowed() ? t.visibility[j >> 2][j & 3] : 1.0; }
 
@@ -144,6 +141,9 @@ vec3 lightMean(int l, vec3 axis, float sharpness, out float productSharpness) {
        / oneMinusExpOver(2.0 * sharpness);
 }
 
+float reflectance(Surface s, vec3 wi, float alphaT, float alphaB, out float fresnel);
+#include "shaders/stage/lamps.glsl"
+
 // Light that arrives through one reflection lobe.
 vec3 lobeRadiance(Surface s, Transfer t, vec3 axis, float sharpness, float broad) {
   float distance = ssdfAt(t, axis);
@@ -165,7 +165,7 @@ vec3 lobeRadiance(Surface s, Transfer t, vec3 axis, float sharpness, float broad
     }
   }
 #endif
-  return max(radiance, vec3(0.0)) * horizonShare(s, axis, sharpness);
+  return (max(radiance, vec3(0.0)) + lampsUnderLobe(s, t, axis, sharpness)) * horizonShare(s, axis, sharpness);
 }
 
 vec3 diffuseLight(Surface s, Transfer t) {
@@ -296,37 +296,10 @@ vec3 smoothReflection(Surface s, Transfer t, vec3 albedo) {
   return s.f0 * base * (albedo.x / max(baseWeight, 1.0e-6)) + s.f90 * edge * (albedo.y / max(edgeWeight, 1.0e-6));
 }
 
-vec3 punctualLight(Surface s, Transfer t, vec3 diffuse, vec3 gain) {
-  vec3 sum = vec3(0.0);
-  for (int l = 0; l < frame.counts.y; ++l) {
-    PunctualLightBlock light = frame.punctualLights[l];
-    vec3 wi = -light.directionRange.xyz;
-    float attenuation = 1.0;
-    if (light.positionType.w > 0.5) {
-      vec3 towards = light.positionType.xyz - s.position;
-      float distance2 = max(dot(towards, towards), 1.0e-12);
-      wi = towards * inversesqrt(distance2);
-      float relative = distance2 * light.directionRange.w * light.directionRange.w;
-      attenuation = clamp(1.0 - relative * relative, 0.0, 1.0) / distance2;
-      if (light.positionType.w > 1.5) {
-        float angular = clamp(dot(light.directionRange.xyz, -wi) * light.cone.x + light.cone.y, 0.0, 1.0);
-        attenuation *= angular * angular;
-      }
-    }
-    float cosineIn = dot(s.n, wi);
-    if (cosineIn <= 0.0 || attenuation <= 0.0 || dot(s.ng, wi) <= 0.0) continue;
-    float fresnel;
-    float f = reflectance(s, wi, s.alphaT, s.alphaB, fresnel);
-    vec3 color = fresnelColor(s, fresnel);
-    vec3 brdf = diffuse * (kOneOverPi * (1.0 - largestOf(color))) + f * color * gain;
-    sum += light.intensity.rgb * brdf * (cosineIn * attenuation * visibleFraction(ssdfAt(t, wi), kPunctualSharpness));
-  }
-  return sum;
-}
-
-// GGX by SG lobes where it is smooth, by the BRDF itself where it is rough.
-vec3 ggxReflection(Surface s, Transfer t, vec3 albedo) {
+// GGX by SG lobes where it is smooth, by the BRDF itself where it is rough; smoothShare: how much of it comes from lobes.
+vec3 ggxReflection(Surface s, Transfer t, vec3 albedo, out float smoothShare) {
 #if LOBES > 0
+  smoothShare = 1.0;
   float broad = broadVisibility(t, 2.0 * dot(s.n, s.wo) * s.n - s.wo);
   return stringReflection(s, t, modelOf(kGgx, s.alphaT, s.alphaB), LOBES, albedo.xy, broad);
 #else
@@ -334,6 +307,7 @@ vec3 ggxReflection(Surface s, Transfer t, vec3 albedo) {
   vec3 reflected = vec3(0.0);
   if (rough < 1.0) reflected += (1.0 - rough) * smoothReflection(s, t, albedo);
   if (rough > 0.0) reflected += rough * roughReflection(s, t, albedo);
+  smoothShare = 1.0 - rough;
   return reflected;
 #endif
 }
@@ -356,7 +330,10 @@ vec3 coatReflection(Surface s, Transfer t) {
   s.alphaT = s.alphaB = clampAlpha(s.coatRoughness * s.coatRoughness);
   s.f0 = vec3(1.0);
   s.f90 = 1.0;
-  return ggxReflection(s, t, albedoAt(s.roughness, dot(s.n, s.wo))) + punctualLight(s, t, vec3(0.0), vec3(1.0));
+  s.diffuse = vec3(0.0);
+  float smoothShare;
+  vec3 reflected = ggxReflection(s, t, albedoAt(s.roughness, dot(s.n, s.wo)), smoothShare);
+  return reflected + lampLight(s, t, smoothShare, vec3(1.0));
 }
 #endif
 
@@ -366,11 +343,13 @@ vec3 shade(Surface s, Transfer t) {
   vec3 albedo = 0.5 * (albedoAt(sqrt(s.alphaT), cosineOut) + albedoAt(sqrt(s.alphaB), cosineOut));
   vec3 gain = vec3(1.0);
   vec3 radiance;
+  float smoothShare;
 #if REFLECTANCE_MODELS
   if (kModelLayers[s.kind] >= 0) {
     ReflectanceModel m = modelOf(s.kind, s.alphaT, s.alphaB);
     vec2 modelTotal = modelAlbedo(s, m);
     float rough = LOBES > 0 ? 0.0 : smoothstep(kModelRoughFrom, kModelRoughTo, sqrt(min(s.alphaT, s.alphaB)));
+    smoothShare = 1.0 - rough;
     radiance = vec3(0.0);
     if (rough < 1.0) radiance += (1.0 - rough) * modelReflection(s, t, m, modelTotal);
     if (rough > 0.0) radiance += rough * roughReflection(s, t, vec3(modelTotal, 0.0));
@@ -379,11 +358,11 @@ vec3 shade(Surface s, Transfer t) {
   {
     // What scatters more than once (Turquin 2019).
     if (energyCompensation()) gain += s.f0 * (1.0 / clamp(albedo.x + albedo.y, 1.0e-3, 1.0) - 1.0);
-    radiance = ggxReflection(s, t, albedo) * gain;
+    radiance = ggxReflection(s, t, albedo, smoothShare) * gain;
   }
   float diffuseShare = 1.0 - (largestOf(s.f0) * (1.0 - albedo.z) + s.f90 * albedo.z);
   if (largestOf(s.diffuse) > 0.0) radiance += s.diffuse * (diffuseShare * kOneOverPi) * diffuseLight(s, t);
-  radiance += punctualLight(s, t, s.diffuse, gain);
+  radiance += lampLight(s, t, smoothShare, gain);
 #if CLEARCOAT
   float through = throughCoat(s);
   if (through < 1.0) radiance = through * radiance + (1.0 - through) * coatReflection(s, t);

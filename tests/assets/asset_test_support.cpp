@@ -243,7 +243,13 @@ BakedScene sampleBake(int terms) {
   spot.direction = {0, -1, 0};
   spot.innerConeAngle = 0.2f;
   spot.outerConeAngle = 0.6f;
-  scene.lights = {sun, lamp, spot};
+  Light wideSun = sun, ball = lamp, disk = spot, smallestDisk = spot;
+  wideSun.angle = 0.1f;
+  ball.type = LightType::sphere;
+  ball.radius = 0.3f;
+  disk.type = smallestDisk.type = LightType::disk;
+  disk.radius = 2.5f;
+  scene.lights = {sun, lamp, spot, wideSun, ball, disk, smallestDisk};
   baked.transfer = anyTransfer(random, scene, 8, terms, 8);
   baked.facts = {{"error.ssdf_rms_radians", 0.0123456789012345}, {"settings.terms", terms}, {"seconds.total", 1e-3}};
   return baked;

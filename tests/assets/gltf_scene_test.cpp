@@ -3,6 +3,7 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
+#include "assets/scene/light_spec.h"
 #include "assets/scene/load_scene.h"
 #include "assets/transfer/gltf_writer.h"
 #include "tests/assets/asset_test_support.h"
@@ -520,6 +521,77 @@ TEST(GltfScene, CamerasAndLights) {
 
   file.root["nodes"][3]["extensions"]["KHR_lights_punctual"]["light"] = 2;
   EXPECT_THAT(file.error(), HasSubstr("names light 2, which does not exist"));
+}
+
+TEST(GltfScene, LightsWithASize) {
+  const auto with = [](const char* type, const json& area, auto use) {
+    File file;
+    file.triangle();
+    file.root["extensionsUsed"] = {"KHR_lights_punctual", "CHIARO_lights_area"};
+    file.root["extensions"]["KHR_lights_punctual"]["lights"] = {
+        {{"type", type}, {"spot", json::object()}, {"extensions", {{"CHIARO_lights_area", area}}}}};
+    file.node({{"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
+    return use(file);
+  };
+  const auto only = [&](const char* type, const json& area) { return with(type, area, [](File& file) { return file.load().lights.at(0); }); };
+  const auto refusal = [&](const char* type, const json& area) { return with(type, area, [](File& file) { return file.error(); }); };
+  EXPECT_EQ(only("point", {{"radius", 0.25}}).type, LightType::sphere);
+  EXPECT_EQ(only("point", {{"radius", 0.25}}).radius, 0.25f);
+  EXPECT_EQ(only("point", {{"radius", 0}}).type, LightType::sphere);
+  EXPECT_EQ(only("spot", {{"radius", 2}}).type, LightType::disk);
+  EXPECT_EQ(only("directional", {{"angle", 0.5}}).angle, 0.5f);
+  const std::string radius = "has a CHIARO_lights_area without a \"radius\" of 0 or more", angle = "without an \"angle\" between 0 and pi/2";
+  for (const json& area : {json{{"radius", -1}}, json{{"radius", "1"}}, json{{"radius", 1e60}}, json{{"angle", 1}}, json(3)})
+    EXPECT_THAT(refusal("point", area), HasSubstr(radius)) << area;
+  for (const json& area : {json{{"angle", -0.1}}, json{{"angle", 1.6}}, json{{"radius", 1}}})
+    EXPECT_THAT(refusal("directional", area), HasSubstr(angle)) << area;
+}
+
+TEST(LightSpec, SaysWhatItMeans) {
+  const Light sphere = parseLightSpec("sphere,at=1,-2,.5,radius=0.25,intensity=2,4,1,range=9");
+  EXPECT_EQ(sphere.type, LightType::sphere);
+  EXPECT_EQ(sphere.position, glm::vec3(1, -2, 0.5f));
+  EXPECT_EQ(sphere.radius, 0.25f);
+  EXPECT_EQ(sphere.color * sphere.intensity, glm::vec3(2, 4, 1));
+  EXPECT_EQ(sphere.range, 9.0f);
+  const Light sun = parseLightSpec("sun,target=0,-2,0,angle-deg=90");
+  EXPECT_EQ(sun.direction, glm::vec3(0, -1, 0));
+  EXPECT_NEAR(sun.angle, 1.5707963f, 1e-6f);
+  const Light disk = parseLightSpec("disk,at=0,3,0,target=0,1,0,radius=1");
+  EXPECT_EQ(disk.direction, glm::vec3(0, -1, 0));
+  EXPECT_GT(disk.innerConeAngle, 1.57f);
+  const Light spot = parseLightSpec("spot,at=0,3,0,direction=0,0,2,cone-deg=10,20");
+  EXPECT_NEAR(spot.outerConeAngle, 0.34906585f, 1e-6f);
+  for (const Light& light : {sphere, sun, disk, spot, parseLightSpec("point,at=0,0,0,intensity=0")}) {
+    const Light again = parseLightSpec(lightSpec(light));
+    EXPECT_EQ(lightSpec(again), lightSpec(light));
+    EXPECT_EQ(again.type, light.type);
+  }
+}
+
+TEST(LightSpec, RefusesTheRest) {
+  const std::pair<const char*, const char*> bad[] = {
+      {"lamp,at=0,0,0", "is none of sun, point, spot, sphere, disk"},
+      {"", "is none of"},
+      {"sphere,at=0,0,0", "a sphere needs \"radius=\""},
+      {"sphere,radius=1", "a sphere needs \"at=\""},
+      {"sphere,at=0,0,radius=1", "at needs three numbers, not 2"},
+      {"sphere,at=0,0,0,radius=-1", "radius is out of range"},
+      {"sphere,at=0,0,0,radius=nan", "is not a number"},
+      {"sphere,at=0,0,0,radius=1,radius=1", "is given twice"},
+      {"sphere,at=0,0,0,radius=1,direction=0,0,1", "a sphere has no \"direction\""},
+      {"sphere,1,2,3", "is not a number"},
+      {"sphere,size=3", "unknown key \"size\""},
+      {"point,at=0,0,0,intensity=-1", "must not be negative"},
+      {"point,at=0,0,0,intensity=1,2", "one number or three"},
+      {"point,at=0,0,0,range=0", "range must be above 0"},
+      {"sun", "needs \"direction=\" or \"target=\""},
+      {"sun,direction=0,0,0", "direction is zero"},
+      {"sun,direction=0,1,0,angle-deg=91", "angle-deg is out of range"},
+      {"disk,at=1,1,1,target=1,1,1,radius=1", "target is where the light is"},
+      {"disk,at=1,1,1,target=1,1,1,direction=0,1,0,radius=1", "one of both"},
+      {"spot,at=0,0,0,direction=0,1,0,cone-deg=20,10", "cone-deg is out of range"}};
+  for (const auto& [text, what] : bad) EXPECT_THAT(errorOf([&, spec = text] { parseLightSpec(spec); }, ExitCode::usage), HasSubstr(what)) << text;
 }
 
 TEST(GltfScene, RequiredExtensions) {

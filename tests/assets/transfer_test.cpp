@@ -99,6 +99,8 @@ void expectSame(const Light& a, const Light& b) {
   EXPECT_EQ(a.range, b.range);
   EXPECT_EQ(a.innerConeAngle, b.innerConeAngle);
   EXPECT_EQ(a.outerConeAngle, b.outerConeAngle);
+  EXPECT_EQ(a.radius, b.radius);
+  EXPECT_EQ(a.angle, b.angle);
   EXPECT_EQ(a.position, b.position);
   EXPECT_EQ(a.direction, b.direction);
 }

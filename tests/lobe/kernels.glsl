@@ -6,6 +6,7 @@
 #include "shaders/lobe/ssdf.glsl"
 #include "shaders/lobe/prefiltered.glsl"
 #include "shaders/lobe/cosine.glsl"
+#include "shaders/lobe/area_light.glsl"
 #include "shaders/lobe/warp.glsl"
 #include "shaders/lobe/octahedral.glsl"
 #include "shaders/lobe/equirect.glsl"
@@ -348,4 +349,33 @@ KERNEL(modelRadiance) {
   y[1] = whole * x.v[10];
   SphericalGaussian light = sphericalGaussian(vectorAt(x, 6), Real(1.0e4), x.v[10]);
   y[2] = sgInnerProduct(lobes[2], light);
+}
+// Vector to the middle (0..2), radius, the way a disk faces (4..6).
+KERNEL(sphereCap) {
+  LightCap cap = sphereCap(vectorAt(x, 0), x.v[3]);
+  y[0] = cap.axis.x;
+  y[1] = cap.axis.y;
+  y[2] = cap.axis.z;
+  y[3] = cap.sinSquared;
+  y[4] = cap.irradiance;
+  y[5] = cap.flux;
+  y[6] = capSharpness(cap);
+}
+KERNEL(diskCap) {
+  LightCap cap = diskCap(vectorAt(x, 0), vectorAt(x, 4), x.v[3]);
+  y[0] = cap.axis.x * cap.irradiance;
+  y[1] = cap.axis.y * cap.irradiance;
+  y[2] = cap.axis.z * cap.irradiance;
+}
+// Angular radius, cosine.
+KERNEL(capIrradianceShare) { y[0] = capIrradianceShare(sunCap(Vec3(Real(0.0), Real(0.0), Real(1.0)), x.v[0]), x.v[1]); }
+// Angular radius, lobe (1..4), alpha.
+KERNEL(capMeanUnderLobe) {
+  LightCap cap = sunCap(Vec3(Real(0.0), Real(0.0), Real(1.0)), x.v[0]);
+  y[0] = capMeanUnderLobe(cap, vectorAt(x, 1), x.v[4]);
+  y[1] = capThroughLobes(cap, x.v[5]);
+  Vec3 point = capPoint(cap, Vec3(Real(1.0), Real(0.0), Real(0.0)), Vec3(Real(0.0), Real(1.0), Real(0.0)), 3);
+  y[2] = point.x;
+  y[3] = point.y;
+  y[4] = point.z;
 }

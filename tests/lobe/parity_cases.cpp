@@ -434,6 +434,48 @@ void addModels(Registry& r) {
   });
 }
 
+void addAreaLights(Registry& r) {
+  r.add(CHIARO_CASE(sphereCap, 4, 7, {{0, 3}, {3, 1}, {4, 1}, {5, 1}, {6, 1}}, "1e-3..1e3 m away, radius up to .999 of that, and 0"), [](Generator& g, auto& out) {
+    const double distance = g.logUniform(1e-3, 1e3);
+    push(out, glm::vec3(distance * g.direction()));
+    out.push_back(g.chance(0.1) ? 0.0f : static_cast<float>(distance * (1 - g.logUniform(1e-3, 1)) * g.logUniform(1e-4, 1)));
+  });
+  // The height over the disk's plane is a difference, so what is near the plane is known to 1e-6 of the distance only.
+  Case disk = CHIARO_CASE(diskCap, 7, 3, {{0, 3}}, "height over its plane at least .05 of distance and radius; error over max(value, 1e-7 / size^2): 2e-5",
+                          [](const float* in) { return 1.0 / (in[0] * in[0] + in[1] * in[1] + in[2] * in[2] + in[3] * in[3]); });
+  disk.tolerance = 2e-5;
+  r.add(std::move(disk), [](Generator& g, auto& out) {
+    const double distance = g.logUniform(1e-3, 1e3);
+    const glm::dvec3 way = g.direction();
+    glm::dvec3 towards = g.direction();
+    for (int i = 0; i < 100 && glm::dot(towards, way) > -0.05; ++i) towards = g.direction();
+    push(out, glm::vec3(distance * towards));
+    out.push_back(g.chance(0.1) ? 0.0f : static_cast<float>(distance * g.logUniform(1e-4, 1)));
+    push(out, glm::vec3(way));
+  });
+  // On the light's edge the cosine's own rounding is the light's width; there the share is small, so errors are over the width.
+  r.add(CHIARO_CASE(capIrradianceShare, 2, 1, scalars(1), "angular radius 1e-6..pi/2, cosine in [-1, 1]; error over max(value, .02)", [](const float*) { return 0.02 / kFloor; }), [](Generator& g, auto& out) {
+    const double s = g.logUniform(1e-6, 1.5707);
+    out.push_back(static_cast<float>(s));
+    out.push_back(static_cast<float>(g.chance(0.7) ? std::sin(s) * g.uniform(-1, 1) : g.uniform(-1, 1)));
+  });
+  // Where a sharp lobe crosses a wide light's edge, the angle between them (rounded to 1e-7) counts in units of the lobe's width: 1e-4.
+  Case under = CHIARO_CASE(capMeanUnderLobe, 6, 5, {{0, 1}, {1, 1}, {2, 3}}, "angular radius 1e-6..pi/2, sharpness 1e-3..1e6; mean over max(value, .05 of the most); edge of sharp lobes: 1e-4",
+                           [](const float* in) {
+                             const double most = std::min(1.0 / (3.14159 * std::sin(in[0]) * std::sin(in[0])), lobe64::vmfAmplitude(in[4]));
+                             return std::max(1.0, most) * 0.05 / kFloor;
+                           });
+  under.tolerance = 1e-4;
+  r.add(std::move(under), [](Generator& g, auto& out) {
+    const double sharpness = g.logUniform(1e-3, 1e6), s = g.logUniform(1e-6, 1.5707);
+    out.push_back(static_cast<float>(s));
+    const glm::vec3 axis(0, 0, 1);
+    push(out, g.chance(0.5) ? g.partner(axis, sharpness) : glm::vec3(g.tilted(glm::dvec3(axis), std::min(3.1, s * g.uniform(0, 2)))));
+    out.push_back(static_cast<float>(sharpness));
+    out.push_back(static_cast<float>(g.logUniform(1e-4, 1)));
+  });
+}
+
 void addDisplay(Registry& r) {
   const Fill unit = [](Generator& g, auto& out) { out.push_back(g.spoil(static_cast<float>(g.chance(0.5) ? g.uniform(-0.1, 1.1) : g.logUniform(1e-9, 1)))); };
   r.add(CHIARO_CASE(srgbEncode, 1, 1, scalars(1), "[0, 1], clamped"), unit);
@@ -509,6 +551,7 @@ const std::vector<Case>& allCases() {
     addMaps(r);
     addGgx(r);
     addModels(r);
+    addAreaLights(r);
     addDisplay(r);
     addSpecular(r);
     return std::move(r.cases);

@@ -184,7 +184,7 @@ TEST(ReferenceLight, EveryStrategyGivesTheSameLight) {
   const glm::dvec3 wo = glm::normalize(glm::dvec3(-0.6, 0.7, 0.1));
   const Estimate combined = environmentLight(surface, wo, sampler, &rays, 1 << 17, 1);
   ASSERT_GT(combined.mean.x, 0.1);
-  for (const Strategy strategy : {Strategy::environment, Strategy::reflection, Strategy::cosine}) {
+  for (const Strategy strategy : {Strategy::light, Strategy::reflection, Strategy::cosine}) {
     const Estimate pure = environmentLight(surface, wo, sampler, &rays, 1 << 17, 2, strategy);
     const double sigma = std::sqrt(pure.varianceOfMean.x + combined.varianceOfMean.x);
     EXPECT_LE(sigma, 0.01 * combined.mean.x);
