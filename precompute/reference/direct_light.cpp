@@ -21,6 +21,8 @@ class LightGatherer {
     reflectionShare_ = strategy == Strategy::reflection ? 1.0
                        : strategy == Strategy::cosine   ? 0.0
                                                         : reflectionShare(surface.brdf, wo_);
+    coatShare_ = strategy == Strategy::combined ? coatShare(surface.brdf, wo_) : 0.0;
+    reflectionShare_ *= 1.0 - coatShare_;
   }
 
   /// One sample of the radiance towards the viewer.
@@ -31,9 +33,11 @@ class LightGatherer {
       sum += contribution(wi, wi * surface_.worldFromTangent);
     }
     if (useBrdf_) {
-      const bool reflect = points.single(index, 2) < reflectionShare_;
+      const double choice = points.single(index, 2);
       const glm::dvec2 random = points.pair(index, 1);
-      const glm::dvec3 local = reflect ? sampleReflection(surface_.brdf, wo_, random) : sampleCosine(random);
+      const glm::dvec3 local = choice < reflectionShare_                ? sampleReflection(surface_.brdf, wo_, random)
+                               : choice < reflectionShare_ + coatShare_ ? sampleCoat(surface_.brdf, wo_, random)
+                                                                        : sampleCosine(random);
       sum += contribution(surface_.worldFromTangent * local, local);
     }
     return sum;
@@ -54,7 +58,8 @@ class LightGatherer {
     double density = useEnvironment_ ? light.density : 0.0;
     if (useBrdf_) {
       density +=
-          reflectionShare_ * reflectionDensity(surface_.brdf, wo_, local) + (1.0 - reflectionShare_) * cosineDensity(local);
+          reflectionShare_ * reflectionDensity(surface_.brdf, wo_, local) + (1.0 - reflectionShare_ - coatShare_) * cosineDensity(local);
+      if (coatShare_ > 0.0) density += coatShare_ * coatDensity(surface_.brdf, wo_, local);
     }
     if (!(density > 0.0)) return none;
     if (rays_ != nullptr) {
@@ -73,6 +78,7 @@ class LightGatherer {
   double useEnvironment_ = 1.0;
   bool useBrdf_ = true;
   double reflectionShare_ = 0.5;
+  double coatShare_ = 0.0;
   std::uint64_t rayCount_ = 0;
 };
 

@@ -65,7 +65,7 @@ class Renderer {
         camera_(camera),
         settings_(settings),
         rays_(scene),
-        surfaces_(scene),
+        surfaces_(scene, settings.energyCompensation),
         environment_(environment, settings.worldFromEnvironment) {}
 
   void renderPixel(int x, int y, ReferenceImage& image, std::uint64_t& rays) const {

@@ -3,8 +3,7 @@
 ///
 ///   Lo(x, wo) = integral over the sphere of f(wi, wo) max(n.wi, 0) V(x, wi) L(wi) dwi + emission + punctual lights
 ///
-/// f is the glTF 2.0 metallic-roughness BRDF (GGX, height-correlated Smith, Schlick; appendix B of the glTF specification) with
-/// KHR_materials_anisotropy; V is traced with Embree.
+/// f is that of reference/brdf.h; V is traced with Embree.
 
 #include <cstdint>
 
@@ -22,6 +21,7 @@ struct ReferenceSettings {
   int pixelGrid = 1;               ///< pixelGrid^2 primary rays at the centres of a grid over the pixel (1: pixel centre)
   glm::mat3 worldFromEnvironment{1.0f};
   bool shadows = true;             ///< false: V = 1 above the horizon
+  bool energyCompensation = false; ///< GGX gives back what scatters more than once: reference/brdf.h
   bool background = true;          ///< false: black and coverage 0 where nothing is hit
   std::uint32_t seed = 0;
   int threads = 0;

@@ -35,7 +35,7 @@ glm::dvec3 perpendicularPart(glm::dvec3 v, glm::dvec3 normal) {
 
 }  // namespace
 
-SurfaceReader::SurfaceReader(const Scene& scene) : scene_(&scene) {
+SurfaceReader::SurfaceReader(const Scene& scene, bool energyCompensation) : scene_(&scene), energyCompensation_(energyCompensation) {
   const auto decode = [&](int texture, TextureEncoding encoding) {
     if (texture == kNone || textures_.contains({texture, encoding})) return;
     textures_.emplace(std::pair(texture, encoding), TextureSampler(scene, texture, encoding));
@@ -46,6 +46,10 @@ SurfaceReader::SurfaceReader(const Scene& scene) : scene_(&scene) {
     decode(material.metallicRoughnessTexture, TextureEncoding::linear);
     decode(material.normalTexture, TextureEncoding::linear);
     decode(material.anisotropyTexture, TextureEncoding::linear);
+    decode(material.specularTexture, TextureEncoding::linear);
+    decode(material.specularColorTexture, TextureEncoding::srgb);
+    decode(material.clearcoatTexture, TextureEncoding::linear);
+    decode(material.clearcoatRoughnessTexture, TextureEncoding::linear);
   }
 }
 
@@ -106,21 +110,62 @@ Surface SurfaceReader::at(const RayHit& hit, glm::dvec3 wo) const {
   const glm::dvec3 along = perpendicularPart(stretchDirection, seen);
   surface.worldFromTangent = glm::dmat3(along, glm::cross(seen, along), seen);
 
-  const glm::dvec4 baseColor = glm::dvec4(material.baseColorFactor) *
-                               lookUp(material.baseColorTexture, material.baseColorTransform, TextureEncoding::srgb, texcoord);
-  const glm::dvec4 metallicRoughness =
-      lookUp(material.metallicRoughnessTexture, material.metallicRoughnessTransform, TextureEncoding::linear, texcoord);
-  const double metallic = static_cast<double>(material.metallicFactor) * metallicRoughness.z;
-  const double roughness = static_cast<double>(material.roughnessFactor) * metallicRoughness.y;
-  const double alpha = std::clamp(roughness * roughness, kMinAlpha, 1.0);
-  surface.brdf.diffuse = glm::dvec3(baseColor) * (1.0 - metallic);
-  surface.brdf.f0 = glm::mix(glm::dvec3(0.04), glm::dvec3(baseColor), metallic);
-  surface.brdf.alphaX = std::lerp(alpha, 1.0, anisotropy * anisotropy);
-  surface.brdf.alphaY = alpha;
+  readBrdf(material, texcoord, anisotropy, surface);
+  surface.brdf.coatNormal = shadingNormalTowards(surface.interpolatedNormal, wo) * surface.worldFromTangent;
+  const glm::dvec3 local = wo * surface.worldFromTangent;
+  if (energyCompensation_) surface.brdf.gain = multipleScatteringGain(surface.brdf, local);
   surface.emission = glm::dvec3(material.emissiveFactor) *
-                     glm::dvec3(lookUp(material.emissiveTexture, material.emissiveTransform, TextureEncoding::srgb, texcoord));
-  if (material.alphaMode == AlphaMode::blend) surface.opacity = std::clamp(baseColor.w, 0.0, 1.0);
+                     glm::dvec3(lookUp(material.emissiveTexture, material.emissiveTransform, TextureEncoding::srgb, texcoord)) *
+                     (1.0 - coatWeight(surface.brdf, local));
   return surface;
+}
+
+void SurfaceReader::readBrdf(const Material& material, glm::vec2 texcoord, double anisotropy, Surface& surface) const {
+  const auto read = [&](int texture, const TextureTransform& transform, TextureEncoding encoding) {
+    return lookUp(texture, transform, encoding, texcoord);
+  };
+  const glm::dvec4 baseColor =
+      glm::dvec4(material.baseColorFactor) * read(material.baseColorTexture, material.baseColorTransform, TextureEncoding::srgb);
+  const glm::dvec4 metallicRoughness = read(material.metallicRoughnessTexture, material.metallicRoughnessTransform, TextureEncoding::linear);
+  const double metallic = static_cast<double>(material.metallicFactor) * metallicRoughness.z;
+  Brdf& brdf = surface.brdf;
+  brdf.model = material.reflectance;
+
+  glm::dvec2 alpha(0.0);
+  if (material.reflectanceWidth) {
+    alpha = glm::dvec2(*material.reflectanceWidth);
+    if (hasExponent(material.reflectance)) alpha = glm::sqrt(2.0 / (alpha + 2.0));
+    alpha *= metallicRoughness.y * metallicRoughness.y;
+  } else {
+    const double roughness = static_cast<double>(material.roughnessFactor) * metallicRoughness.y;
+    alpha = glm::dvec2(roughness * roughness);
+    if (!isRound(material.reflectance)) alpha.x = std::lerp(std::max(alpha.y, kMinAlpha), 1.0, anisotropy * anisotropy);
+  }
+  brdf.alphaX = std::clamp(alpha.x, kMinAlpha, 1.0);
+  brdf.alphaY = std::clamp(alpha.y, kMinAlpha, 1.0);
+
+  const double specular = static_cast<double>(material.specularFactor) *
+                          read(material.specularTexture, material.specularTransform, TextureEncoding::linear).w;
+  const double ior = static_cast<double>(material.ior);
+  const double atNormal = ior == 0.0 ? 1.0 : (ior - 1.0) * (ior - 1.0) / ((ior + 1.0) * (ior + 1.0));
+  const glm::dvec3 tint = glm::dvec3(material.specularColorFactor) *
+                          glm::dvec3(read(material.specularColorTexture, material.specularColorTransform, TextureEncoding::srgb));
+  brdf.diffuse = glm::dvec3(baseColor) * (1.0 - metallic);
+  brdf.f0 = glm::mix(glm::min(atNormal * tint, 1.0) * specular, glm::dvec3(baseColor), metallic);
+  brdf.f90 = glm::dvec3(std::lerp(specular, 1.0, metallic));
+  if (material.reflectanceF0) {
+    brdf.f0 = glm::dvec3(*material.reflectanceF0);
+    brdf.f90 = glm::dvec3(1.0);
+  }
+
+  if (material.clearcoatFactor > 0.0f) {
+    brdf.coat = static_cast<double>(material.clearcoatFactor) *
+                read(material.clearcoatTexture, material.clearcoatTransform, TextureEncoding::linear).x;
+    const double roughness = static_cast<double>(material.clearcoatRoughness) *
+                             read(material.clearcoatRoughnessTexture, material.clearcoatRoughnessTransform, TextureEncoding::linear).y;
+    brdf.coatAlpha = std::clamp(roughness * roughness, kMinAlpha, 1.0);
+  }
+  if (material.alphaMode == AlphaMode::blend) surface.opacity = std::clamp(baseColor.w, 0.0, 1.0);
 }
 
 }  // namespace chiaro::reference

@@ -27,7 +27,8 @@ struct Surface {
 class SurfaceReader {
  public:
   /// Decodes every texture a material uses; keeps a reference to `scene`. Throws Error (unreadableInput).
-  explicit SurfaceReader(const Scene& scene);
+  /// `energyCompensation`: GGX gives back what scatters more than once between its facets (multipleScatteringGain).
+  explicit SurfaceReader(const Scene& scene, bool energyCompensation = false);
 
   /// True where a viewer looking along `direction` sees the back of a material that has none (glTF 2.0, 3.9.6: culled).
   bool isCulled(const RayHit& hit, glm::vec3 direction) const;
@@ -40,7 +41,10 @@ class SurfaceReader {
   /// RGBA of a texture, or white without one.
   glm::dvec4 lookUp(int texture, const TextureTransform& transform, TextureEncoding encoding, glm::vec2 texcoord) const;
 
+  void readBrdf(const Material& material, glm::vec2 texcoord, double anisotropy, Surface& surface) const;
+
   const Scene* scene_;
+  bool energyCompensation_ = false;
   std::map<std::pair<int, TextureEncoding>, TextureSampler> textures_;
 };
 
