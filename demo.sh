@@ -37,6 +37,7 @@ for environment in sunny overcast windows; do
 done
 picture sunny_turned --environment sunny --rotate-environment-deg 120
 picture sunny_rough --environment sunny --roughness 0.7
+picture sunny_ward_metal --environment sunny --model ward --roughness 0.4 --metallic 1
 picture windows_polished_metal --environment windows --roughness 0.15 --metallic 1
 "$bin/chiaro-view" "$out/ornament.glb" --headless --environment sunny --size 720x450 --frames 3 --json "$out/timings.json" --quiet
 
@@ -55,5 +56,5 @@ your own   $bin/chiaro-precompute scene.glb -o baked.glb
 END
 if [ "$window" = yes ]; then
   say "opening the viewer (close its window to end; --no-window leaves this out)"
-  exec "$bin/chiaro-view" "$out/ornament.glb"
+  exec "$bin/chiaro-view" "$out/ornament.glb" --animate wetness
 fi

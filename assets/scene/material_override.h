@@ -15,6 +15,11 @@ struct MaterialOverride {
   bool any() const { return roughness.has_value() || metallic.has_value() || model.has_value(); }
 };
 
+/// What --model names, nothing for an empty text. Throws Error (usage).
+std::optional<Reflectance> modelFromOption(const std::string& name);
+/// What --lobes may be: 0, 1, 3, 5, 7 or 9. Throws Error (usage).
+void requireLobes(int lobes);
+
 /// Gives every primitive without a material the glTF default one as a material of the scene, so that it can be edited.
 void nameDefaultMaterial(Scene& scene);
 

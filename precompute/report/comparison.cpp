@@ -37,11 +37,11 @@ PreparedLight prepareLight(const std::string& nameOrPath, int threads) {
   return light;
 }
 
-/// The scene with every material set; with no roughness and no metalness asked for, as it is.
-BakedScene withMaterials(const BakedScene& baked, std::optional<float> roughness, std::optional<float> metallic) {
+/// The scene with every material set; with nothing asked for, as it is.
+BakedScene withMaterials(const BakedScene& baked, const MaterialOverride& materials) {
   BakedScene changed = baked;
   nameDefaultMaterial(changed.scene);
-  overrideMaterials(changed.scene, {roughness, metallic});
+  overrideMaterials(changed.scene, materials);
   return changed;
 }
 
@@ -73,6 +73,8 @@ void drawRuntime(const BakedScene& baked, const PreparedLight& light, const Came
   settings.exposure = comparison.display.exposure;
   settings.toneMap = comparison.display.toneMap;
   settings.shadows = options.shadows;
+  settings.energyCompensation = options.energyCompensation;
+  settings.lobes = options.lobes;
   renderer.render(camera, settings);
   comparison.runtime = renderer.readRadiance();
   comparison.runtimeSeconds = secondsNow() - start;
@@ -88,6 +90,7 @@ ReferenceHalves drawReference(const Scene& scene, const Environment& environment
   settings.samplesPerPixel = std::max(2, (options.samples + 1) / 2);
   settings.pixelGrid = options.supersample;
   settings.shadows = options.shadows;
+  settings.energyCompensation = options.energyCompensation;
   settings.threads = options.threads;
   const auto half = [&](std::uint32_t seed) {
     settings.seed = seed;
@@ -126,7 +129,7 @@ Comparisons compareAll(const BakedScene& baked, const ReportOptions& options, co
       comparison.display = {options.exposure.value_or(light.autoExposure), options.toneMap};
       comparison.lightCount = light.prefiltered.lights.size();
       comparison.prepareSeconds = light.seconds;
-      const BakedScene changed = withMaterials(baked, roughness, options.metallic);
+      const BakedScene changed = withMaterials(baked, {roughness, options.metallic, options.model});
       drawRuntime(changed, light, result.camera, options, comparison);
       context.debugLog().requireClean("the rendering");
       const ReferenceHalves halves =

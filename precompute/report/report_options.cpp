@@ -7,6 +7,7 @@
 #include "assets/builtin/environment.h"
 #include "assets/error.h"
 #include "assets/file.h"
+#include "assets/scene/material_override.h"
 
 namespace chiaro {
 namespace {
@@ -80,6 +81,12 @@ void declareReportOptions(CLI::App& app, ReportOptions& options, ReportOptionTex
       ->type_name("R")
       ->allow_extra_args(false);
   app.add_option("--metallic", options.metallic, "Metalness of every material, 0 to 1")->type_name("M");
+  app.add_option("--model", texts.model, "Reflectance model of every material: ggx, cookTorrance, beckmann, blinnPhong, ward or ashikhminShirley")
+      ->type_name("NAME");
+  app.add_flag("--energy-compensation", options.energyCompensation, "GGX gives back what scatters more than once, in both pictures");
+  app.add_option("--lobes", options.lobes, "1, 3, 5, 7 or 9 lobes strung for every material; 0 is the best known")
+      ->type_name("N")
+      ->capture_default_str();
   app.add_option("--size", texts.size, "Picture size in pixels")->type_name("WxH")->capture_default_str();
   app.add_option("--camera", texts.camera,
                  "auto (the file's first camera, else one that frames the scene), an index or name of a camera in the file, or "
@@ -115,6 +122,8 @@ void finishReportOptions(ReportOptions& options, const ReportOptionTexts& texts)
   options.shadows = !texts.noShadows;
   for (const float roughness : options.roughnesses) requireShare(roughness, "--roughness");
   if (options.metallic) requireShare(*options.metallic, "--metallic");
+  options.model = modelFromOption(texts.model);
+  requireLobes(options.lobes);
   if (options.supersample < 1 || options.supersample > 8)
     throw usageError("--supersample", "must lie between 1 and 8", "give 2 to filter edges and textures");
   if (options.samples < 2 || options.samples > kMostSamples)

@@ -9,6 +9,7 @@
 
 #include "assets/image/display.h"
 #include "assets/scene/camera_spec.h"
+#include "assets/scene/reflectance.h"
 
 namespace CLI {
 class App;
@@ -29,6 +30,9 @@ struct ReportOptions {
   std::optional<float> exposure;  ///< absent: autoExposure() of each environment
   ToneMap toneMap = ToneMap::neutral;
   bool shadows = true;
+  std::optional<Reflectance> model;  ///< of every material
+  bool energyCompensation = false;
+  int lobes = 0;                     ///< RenderSettings::lobes
   std::optional<double> failUnder;  ///< dB
   int threads = 0;
   bool quiet = false;
@@ -41,6 +45,7 @@ struct ReportOptionTexts {
   std::string camera = "auto";
   std::string exposure = "auto";
   std::string toneMap = "neutral";
+  std::string model;
   bool noShadows = false;
 };
 

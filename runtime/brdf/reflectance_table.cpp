@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <mutex>
 
 #include "runtime/parallel.h"
 #include "shaders/cpp/lobe.h"
@@ -311,6 +313,15 @@ ReflectanceTable makeReflectanceTable(int kind, int widthCount, int cosineCount,
     });
   }
   return table;
+}
+
+const ReflectanceTable& reflectanceTableOf(int kind) {
+  static std::mutex mutex;
+  static std::map<int, ReflectanceTable> tables;
+  const std::lock_guard lock(mutex);
+  auto found = tables.find(kind);
+  if (found == tables.end()) found = tables.emplace(kind, makeReflectanceTable(kind)).first;
+  return found->second;
 }
 
 std::vector<SliceLobe> reflectanceLobes(const ReflectanceTable& table, double width, double cosineOut) {

@@ -25,6 +25,9 @@ struct ReflectanceTable {
 ReflectanceTable makeReflectanceTable(int kind, int widthCount = ReflectanceTable::kWidths,
                                       int cosineCount = ReflectanceTable::kCosines, int threads = 0);
 
+/// The table of default size, made when it is first asked for and kept while the process lives.
+const ReflectanceTable& reflectanceTableOf(int kind);
+
 /// A lobe as it stands in the tangent frame of a viewer in the xz plane.
 struct SliceLobe {
   glm::dvec3 axis{0.0, 0.0, 1.0};

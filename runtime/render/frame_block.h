@@ -10,6 +10,8 @@ namespace chiaro {
 inline constexpr int kMaxSgLights = 32;
 inline constexpr int kMaxPunctualLights = 32;
 inline constexpr int kMaxDirections = 64;
+inline constexpr int kCommonTextures = 5;    // of a glTF material with anisotropy, units 0 ..
+inline constexpr int kMaterialTextures = 9;  // with those of KHR_materials_specular and _clearcoat, units 17 ..
 
 struct SgLightBlock {
   glm::vec4 axisSharpness{0.0f};
@@ -53,9 +55,12 @@ struct MaterialBlock {
   glm::vec4 surface{0.0f};
   glm::vec4 anisotropy{1.0f, 0.0f, 0.0f, 0.0f};
   glm::ivec4 textures{0};
-  glm::vec4 textureLinear[5];  // columns of a 2 x 2 matrix
-  glm::vec4 textureOffset[5];
+  glm::vec4 specular{0.0f};
+  glm::vec4 fixedF0{0.0f};
+  glm::vec4 coat{0.0f};
+  glm::vec4 textureLinear[kMaterialTextures];  // columns of a 2 x 2 matrix
+  glm::vec4 textureOffset[kMaterialTextures];
 };
-static_assert(offsetof(MaterialBlock, textureLinear) == 80 && sizeof(MaterialBlock) == 240);
+static_assert(offsetof(MaterialBlock, textureLinear) == 128 && sizeof(MaterialBlock) == 416);
 
 }  // namespace chiaro

@@ -95,7 +95,9 @@ void GpuScene::uploadTextures(const Scene& scene) {
   for (const auto& material : materials_) {
     materialTextures_.push_back({make(material.baseColorTexture, true), make(material.metallicRoughnessTexture, false),
                                  make(material.normalTexture, false), make(material.emissiveTexture, true),
-                                 make(material.anisotropyTexture, false)});
+                                 make(material.anisotropyTexture, false), make(material.specularTexture, false),
+                                 make(material.specularColorTexture, true), make(material.clearcoatTexture, false),
+                                 make(material.clearcoatRoughnessTexture, false)});
   }
 }
 
@@ -115,19 +117,22 @@ void GpuScene::writeMaterials() {
     block.baseColor = m.baseColorFactor;
     block.emissive = glm::vec4(m.emissiveFactor, m.alphaCutoff);
     block.surface = glm::vec4(m.metallicFactor, m.roughnessFactor, m.normalScale, m.anisotropyStrength);
-    block.anisotropy = glm::vec4(std::cos(m.anisotropyRotation), std::sin(m.anisotropyRotation), 0, 0);
-    int present = 0;
-    for (int t = 0; t < 5; ++t)
-      if (materialTextures_[i][at(t)] != kNone) present |= 1 << t;
+    const glm::vec2 alpha = m.reflectanceWidth ? reflectanceAlpha(m) : glm::vec2(0.0f);
+    block.anisotropy = glm::vec4(std::cos(m.anisotropyRotation), std::sin(m.anisotropyRotation), alpha);
     // An override of the parameters drops the texture by setting its index to none.
-    if (m.baseColorTexture == kNone) present &= ~1;
-    if (m.metallicRoughnessTexture == kNone) present &= ~2;
-    if (m.normalTexture == kNone) present &= ~4;
-    if (m.emissiveTexture == kNone) present &= ~8;
-    if (m.anisotropyTexture == kNone) present &= ~16;
-    block.textures = glm::ivec4(present, static_cast<int>(m.alphaMode), m.doubleSided ? 1 : 0, 0);
-    const std::array<const TextureTransform*, 5> transforms{&m.baseColorTransform, &m.metallicRoughnessTransform, &m.normalTransform,
-                                                            &m.emissiveTransform, &m.anisotropyTransform};
+    const std::array<int, kMaterialTextures> wanted{m.baseColorTexture,     m.metallicRoughnessTexture, m.normalTexture,
+                                                    m.emissiveTexture,      m.anisotropyTexture,        m.specularTexture,
+                                                    m.specularColorTexture, m.clearcoatTexture,         m.clearcoatRoughnessTexture};
+    int present = 0;
+    for (int t = 0; t < kMaterialTextures; ++t)
+      if (wanted[at(t)] != kNone && materialTextures_[i][at(t)] != kNone) present |= 1 << t;
+    block.textures = glm::ivec4(present, static_cast<int>(m.alphaMode), m.doubleSided ? 1 : 0, lobeKindOf(m.reflectance));
+    block.specular = glm::vec4(dielectricF0(m.ior) * m.specularColorFactor, m.specularFactor);
+    block.fixedF0 = m.reflectanceF0 ? glm::vec4(*m.reflectanceF0, 1.0f) : glm::vec4(0.0f);
+    block.coat = glm::vec4(m.clearcoatFactor, m.clearcoatRoughness, 0, 0);
+    const std::array<const TextureTransform*, kMaterialTextures> transforms{
+        &m.baseColorTransform,  &m.metallicRoughnessTransform, &m.normalTransform,    &m.emissiveTransform,          &m.anisotropyTransform,
+        &m.specularTransform,   &m.specularColorTransform,     &m.clearcoatTransform, &m.clearcoatRoughnessTransform};
     for (std::size_t t = 0; t < transforms.size(); ++t) {
       const glm::mat2 linear = transforms[t]->linear();
       block.textureLinear[t] = glm::vec4(linear[0], linear[1]);
@@ -135,6 +140,7 @@ void GpuScene::writeMaterials() {
     }
     blocks.push_back(block);
   }
+  features_ = merged(features_, featuresOf(materials_));
   materialBuffer_.write(0, std::span<const MaterialBlock>(blocks));
 }
 
@@ -146,8 +152,9 @@ void GpuScene::bindBuffers() const {
 }
 
 void GpuScene::bindTextures(int material) const {
-  for (int unit = 0; unit < 5; ++unit) {
-    const int texture = materialTextures_[at(material)][at(unit)];
+  for (int t = 0; t < (features_.layerTextures ? kMaterialTextures : kCommonTextures); ++t) {
+    const int texture = materialTextures_[at(material)][at(t)];
+    const int unit = t < kCommonTextures ? t : t - kCommonTextures + 17;
     (texture == kNone ? white_ : textures_[at(texture)]).bind(static_cast<GLuint>(unit));
   }
 }

@@ -8,7 +8,9 @@
 #include "assets/transfer/transfer.h"
 #include "runtime/gl/buffer.h"
 #include "runtime/gl/texture.h"
+#include "runtime/render/frame_block.h"
 #include "runtime/render/gpu_transfer.h"
+#include "runtime/render/material_features.h"
 
 namespace chiaro {
 
@@ -27,11 +29,12 @@ class GpuScene {
   void setMaterials(const std::vector<Material>& materials);
   /// Geometry, transfer and materials to their binding points.
   void bindBuffers() const;
-  /// The five textures of a material to units 0..4.
+  /// The textures of a material to units 0..4, and where the scene has such, of specular and coat to 17..20.
   void bindTextures(int material) const;
 
   const std::vector<GpuDraw>& draws() const { return draws_; }
   const Material& material(int index) const { return materials_[static_cast<std::size_t>(index)]; }
+  const MaterialFeatures& features() const { return features_; }
   const GpuTransfer& transfer() const { return transfer_; }
   float directionSharpness() const { return directionSharpness_; }
   const std::vector<glm::vec3>& directions() const { return directions_; }
@@ -53,7 +56,8 @@ class GpuScene {
   gl::Buffer vertices_, indices_, materialBuffer_;
   gl::Texture white_;
   std::vector<gl::Texture> textures_;
-  std::vector<std::array<int, 5>> materialTextures_;  // into textures_, or kNone
+  std::vector<std::array<int, kMaterialTextures>> materialTextures_;  // into textures_, or kNone
+  MaterialFeatures features_;  // all that setMaterials() has brought up to now
   std::size_t bytes_ = 0;
 };
 

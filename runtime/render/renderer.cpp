@@ -13,11 +13,12 @@
 #include "runtime/render/frame_block.h"
 #include "runtime/render/gpu_environment.h"
 #include "runtime/render/gpu_scene.h"
+#include "runtime/render/reflectance_textures.h"
 
 namespace chiaro {
 namespace {
 
-constexpr unsigned kFlagShadows = 1;
+constexpr unsigned kFlagShadows = 1, kFlagEnergyCompensation = 2;
 const std::vector<std::string> kPasses{"depth", "shade", "background", "blended", "resolve"};
 
 glm::mat4 projectionOf(const Camera& camera, float aspect) {
@@ -68,7 +69,9 @@ struct Renderer::Impl {
   std::vector<Light> lights;
   std::optional<GpuEnvironment> environment;
   gl::Program depthProgram, shadeProgram, backgroundProgram, resolveProgram, displayProgram;
-  gl::Texture specularTable, albedoTable;
+  gl::Texture specularTable, albedoTable, modelTable;
+  std::optional<MaterialFeatures> built;  // what the programs and modelTable are for
+  int builtLobes = 0;
   gl::VertexArray noAttributes = gl::VertexArray::create();
   gl::Buffer frameBuffer{sizeof(FrameBlock)};
   gl::Program lightProgram;
@@ -82,14 +85,12 @@ struct Renderer::Impl {
 
   explicit Impl(const BakedScene& baked) : scene(baked), lights(baked.scene.lights) {
     if (lights.size() > kMaxPunctualLights) lights.resize(kMaxPunctualLights);
-    const auto defines = scene.transfer().defines();
-    depthProgram = gl::Program::load({{GL_VERTEX_SHADER, "shaders/stage/mesh.vert"}, {GL_FRAGMENT_SHADER, "shaders/stage/depth.frag"}});
-    shadeProgram = gl::Program::load({{GL_VERTEX_SHADER, "shaders/stage/mesh.vert"}, {GL_FRAGMENT_SHADER, "shaders/stage/shade.frag"}}, defines);
+    build(0);
     backgroundProgram =
         gl::Program::load({{GL_VERTEX_SHADER, "shaders/stage/fullscreen.vert"}, {GL_FRAGMENT_SHADER, "shaders/stage/background.frag"}});
     resolveProgram = gl::Program::load({{GL_VERTEX_SHADER, "shaders/stage/fullscreen.vert"}, {GL_FRAGMENT_SHADER, "shaders/stage/resolve.frag"}});
     displayProgram = gl::Program::load({{GL_VERTEX_SHADER, "shaders/stage/fullscreen.vert"}, {GL_FRAGMENT_SHADER, "shaders/stage/display.frag"}});
-    if (scene.transfer().occludes()) lightProgram = gl::Program::loadCompute("shaders/stage/light_visibility.comp", defines);
+    if (scene.transfer().occludes()) lightProgram = gl::Program::loadCompute("shaders/stage/light_visibility.comp", scene.transfer().defines());
 
     const SpecularTable table = makeSpecularTable();
     specularTable = gl::Texture::make2dArray(GL_RGBA32F, table.roughnessCount, table.cosineCount, SpecularTable::kLobeCount);
@@ -98,6 +99,20 @@ struct Renderer::Impl {
     albedoTable = gl::Texture::make2d(GL_RGB32F, albedo.size, albedo.size);
     albedoTable.upload(0, GL_RGB, GL_FLOAT, albedo.entries.data());
     for (std::size_t i = 0; i < kPasses.size(); ++i) timers.push_back(gl::TimerQuery::create());
+  }
+
+  /// The programs and tables that the scene's materials ask for; nothing where they are there.
+  void build(int lobes) {
+    const MaterialFeatures& features = scene.features();
+    if (built == features && builtLobes == lobes) return;
+    modelTable = makeReflectanceTextures(features);
+    auto defines = features.defines(kReflectanceLayers);
+    depthProgram = gl::Program::load({{GL_VERTEX_SHADER, "shaders/stage/mesh.vert"}, {GL_FRAGMENT_SHADER, "shaders/stage/depth.frag"}}, defines);
+    defines.push_back("LOBES " + std::to_string(lobes));
+    for (auto& define : scene.transfer().defines()) defines.push_back(std::move(define));
+    shadeProgram = gl::Program::load({{GL_VERTEX_SHADER, "shaders/stage/mesh.vert"}, {GL_FRAGMENT_SHADER, "shaders/stage/shade.frag"}}, defines);
+    built = features;
+    builtLobes = lobes;
   }
 
   void resize(int width, int height, int supersample) {
@@ -122,7 +137,7 @@ struct Renderer::Impl {
     environment->fill(frame, settings.worldFromEnvironment, scene.directions(), scene.directionSharpness());
     frame.counts.y = static_cast<int>(lights.size());
     frame.counts.z = static_cast<int>(settings.debugView);
-    frame.counts.w = settings.shadows ? static_cast<int>(kFlagShadows) : 0;
+    frame.counts.w = static_cast<int>((settings.shadows ? kFlagShadows : 0u) | (settings.energyCompensation ? kFlagEnergyCompensation : 0u));
     for (std::size_t l = 0; l < lights.size(); ++l) frame.punctualLights[l] = blockOf(lights[l]);
     return frame;
   }
@@ -208,6 +223,7 @@ struct Renderer::Impl {
 
   void render(const Camera& camera, const RenderSettings& settings) {
     if (!environment) throw Error(ExitCode::failed, "render", "no environment was set", "call setEnvironment first");
+    build(settings.lobes);
     resize(settings.width, settings.height, settings.supersample);
     FrameBlock frame = frameBlock(camera, settings);
     frameBuffer.write(0, std::span<const FrameBlock>(&frame, 1));
@@ -219,6 +235,7 @@ struct Renderer::Impl {
     environment->bindTextures();
     specularTable.bind(9);
     albedoTable.bind(10);
+    if (modelTable) modelTable.bind(16);
     noAttributes.bind();
     shaded->framebuffer.bind();
     glEnable(GL_TEXTURE_CUBE_MAP_SEAMLESS);
@@ -293,6 +310,8 @@ void Renderer::setMaterials(const std::vector<Material>& materials) { impl_->sce
 void Renderer::render(const Camera& camera, const RenderSettings& settings) {
   if (settings.width < 1 || settings.height < 1 || settings.supersample < 1 || settings.supersample > 8)
     throw usageError("size", "a picture needs at least one pixel and 1 to 8 samples a side", "check width, height and supersample");
+  if (settings.lobes != 0 && (settings.lobes < 1 || settings.lobes > 9 || settings.lobes % 2 == 0))
+    throw usageError("lobes", std::to_string(settings.lobes) + " is not 0, 1, 3, 5, 7 or 9", "give one of them");
   impl_->render(camera, settings);
 }
 

@@ -26,6 +26,8 @@ struct RenderSettings {
   float exposure = 1.0f;                     ///< factor on radiance before the tone map
   ToneMap toneMap = ToneMap::neutral;
   bool shadows = true;
+  bool energyCompensation = false;           ///< GGX gives back what scatters more than once between its facets
+  int lobes = 0;                             ///< 1, 3, 5, 7 or 9 (GGX three times as many): strings of so many for every material; 0: the best known
   bool background = true;                    ///< show the environment behind the scene
   DebugView debugView = DebugView::none;
 };
@@ -47,7 +49,8 @@ class Renderer {
   Renderer& operator=(Renderer&&) noexcept;
 
   void setEnvironment(const SgEnvironment& environment);
-  /// Material parameters may change every frame at no other cost than this upload; count and textures as in the scene.
+  /// Material parameters may change every frame at no other cost than this upload; count and textures as in the scene. The first time
+  /// that a model or a coat comes in which no material had before costs a compilation, and a model its table.
   void setMaterials(const std::vector<Material>& materials);
 
   /// Renders one frame into the renderer's own targets.

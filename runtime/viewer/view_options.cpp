@@ -102,6 +102,13 @@ void declareViewOptions(CLI::App& app, ViewOptions& options, ViewOptionTexts& te
   app.add_option("--roughness", texts.roughness, "Perceptual roughness of every material, 0 to 1")->type_name("R")->group(view);
   app.add_option("--metallic", texts.metallic, "Metalness of every material, 0 to 1")->type_name("M")->group(view);
 
+  app.add_option("--animate", texts.animate, "none, or wetness: every material gets wet and dry again, in 4 seconds or 240 frames of a run that ends")
+      ->type_name("NAME")->capture_default_str()->group(view);
+  app.add_option("--model", texts.model, "Reflectance model of every material: " + joined(reflectanceNames()))->type_name("NAME")->group(view);
+  app.add_flag("--energy-compensation", options.energyCompensation, "GGX gives back what scatters more than once between its facets")->group(view);
+  app.add_option("--lobes", options.lobes, "1, 3, 5, 7 or 9 lobes strung for every material (GGX: three times as many); 0 is the best known")
+      ->type_name("N")->capture_default_str()->group(view);
+
   const std::string files = "Runs that end";
   app.add_flag("--headless", texts.headless, "Draw without a window")->group(files);
   app.add_flag("--window", texts.window, "Draw in a window that closes when done")->group(files);
@@ -128,7 +135,9 @@ void finishViewOptions(ViewOptions& options, const ViewOptionTexts& texts) {
   options.debugView = debugViewFromName(texts.debugView);
   options.shadows = !texts.noShadows;
   options.background = !texts.noBackground;
-  options.materials = {texts.roughness, texts.metallic};
+  options.materials = {texts.roughness, texts.metallic, modelFromOption(texts.model)};
+  requireLobes(options.lobes);
+  options.animation = materialAnimationFromName(texts.animate);
   for (const auto& [value, option] : {std::pair{texts.roughness, "--roughness"}, std::pair{texts.metallic, "--metallic"}})
     if (value && !(*value >= 0.0f && *value <= 1.0f)) throw usageError(option, "must lie between 0 and 1", "give a number such as 0.4");
   if (options.supersample < 1 || options.supersample > 8) throw usageError("--supersample", "must lie between 1 and 8", "give a number such as 2");

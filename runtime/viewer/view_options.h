@@ -11,6 +11,7 @@
 #include "assets/scene/camera_spec.h"
 #include "assets/scene/material_override.h"
 #include "runtime/render/renderer.h"
+#include "runtime/viewer/material_animation.h"
 
 namespace CLI {
 class App;
@@ -38,7 +39,10 @@ struct ViewOptions {
   MaterialOverride materials;
   bool shadows = true;
   bool background = true;
+  bool energyCompensation = false;
+  int lobes = 0;                          ///< RenderSettings::lobes
   DebugView debugView = DebugView::none;
+  MaterialAnimation animation = MaterialAnimation::none;
   int frames = 1;
   int threads = 0;
   std::filesystem::path picture;          ///< .png or .exr; empty: none
@@ -58,6 +62,8 @@ struct ViewOptionTexts {
   std::string timings;
   std::string scene;
   std::optional<float> roughness, metallic;
+  std::string model;
+  std::string animate = "none";
   bool headless = false, window = false, noShadows = false, noBackground = false, framesGiven = false;
 };
 

@@ -80,6 +80,8 @@ RenderSettings renderSettings(const ViewOptions& options, float autoExposure) {
   settings.toneMap = options.toneMap;
   settings.shadows = options.shadows;
   settings.background = options.background;
+  settings.energyCompensation = options.energyCompensation;
+  settings.lobes = options.lobes;
   settings.debugView = options.debugView;
   return settings;
 }
@@ -110,6 +112,8 @@ void runFrames(const ViewOptions& options, const LoadedScene& scene, const Camer
   std::vector<FrameTimings> timings;
   for (int frame = -warmUp; frame < options.frames; ++frame) {
     if (frame == 0) start = secondsNow();
+    if (options.animation != MaterialAnimation::none)
+      renderer.setMaterials(animated(options.animation, scene.baked.scene.materials, (frame + 1) / 60.0));
     renderer.render(camera, settings);
     if (frame >= 0) timings.push_back(renderer.timings());
     if (afterFrame) afterFrame(renderer, frame);

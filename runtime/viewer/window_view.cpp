@@ -96,8 +96,9 @@ class InteractiveView {
   void run() {
     int unsettled = 3;  // Dear ImGui needs a few frames until its layout rests
     while (!window_.closing()) {
+      const bool moving = state_.continuous || options_.animation != MaterialAnimation::none;
       const bool awaiting = pendingEnvironment_.valid() || pendingScene_.valid() || coarse_;
-      window_.pollEvents(unsettled > 0 || state_.continuous ? 0.0 : awaiting ? 0.05 : 0.5);
+      window_.pollEvents(unsettled > 0 || moving ? 0.0 : awaiting ? 0.05 : 0.5);
       if (collectPending() || window_.takeActivity()) unsettled = 3;
       for (const auto& path : window_.takeDroppedFiles()) open(path);
       const glm::ivec2 size = window_.framebufferSize();
@@ -105,7 +106,7 @@ class InteractiveView {
         window_.pollEvents(0.1);
         continue;
       }
-      if (unsettled == 0 && !state_.continuous && !coarse_) continue;
+      if (unsettled == 0 && !moving && !coarse_) continue;
       drawFrame(size);
       if (unsettled > 0) --unsettled;
     }
@@ -182,6 +183,8 @@ class InteractiveView {
     settings.toneMap = state_.toneMap;
     settings.shadows = state_.shadows;
     settings.background = state_.background;
+    settings.energyCompensation = options_.energyCompensation;
+    settings.lobes = options_.lobes;
     settings.debugView = state_.debugView;
     return settings;
   }
@@ -190,6 +193,10 @@ class InteractiveView {
   /// at rest costs nothing: what was drawn last is shown again.
   void render(glm::ivec2 size) {
     const RenderSettings wanted = wantedSettings(size);
+    if (options_.animation != MaterialAnimation::none) {
+      renderer_->setMaterials(animated(options_.animation, state_.materials, secondsNow() - startedAt_));
+      stale_ = true;
+    }
     const bool changed = stale_ || !same(wanted, wanted_) || !same(orbit_.camera(), drawnFrom_);
     const bool whole = state_.continuous || saveWanted_;
     if (changed) changedAt_ = secondsNow();
@@ -328,6 +335,7 @@ class InteractiveView {
   bool stale_ = true;         // materials, environment or scene are not those of the last frame
   bool coarse_ = false;       // the last frame was a preview
   double changedAt_ = 0.0;
+  const double startedAt_ = secondsNow();  // of an animation
   double millisecondsPerSample_ = std::numeric_limits<double>::infinity();
   bool saveWanted_ = false;
 };

@@ -4,6 +4,7 @@ const int kMaxPunctualLights = 32;
 const int kMaxDirections = 64;
 
 const uint kFlagShadows = 1u;
+const uint kFlagEnergyCompensation = 2u;
 
 struct SgLightBlock {
   vec4 axisSharpness;  // world axis, sharpness

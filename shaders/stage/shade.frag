@@ -74,24 +74,53 @@ Surface surfaceHere(MaterialBlock m, vec4 baseColor) {
   float alpha = clampAlpha(s.roughness * s.roughness);
   s.alphaT = alpha;
   s.alphaB = alpha;
+  s.kind = m.textures.w;
+  bool given = m.anisotropy.z > 0.0;
+  if (given) {
+    float scale = m.surface.y > 0.0 ? s.roughness / m.surface.y : 0.0;
+    if (!hasTexture(m, kHasMetallicRoughness)) scale = 1.0;
+    s.alphaT = clampAlpha(m.anisotropy.z * scale * scale);
+    s.alphaB = clampAlpha(m.anisotropy.w * scale * scale);
+    s.roughness = sqrt(min(s.alphaT, s.alphaB));
+  }
   vec2 direction = m.anisotropy.xy;
   float strength = m.surface.w;
-  if (strength > 0.0) {
+  if (strength > 0.0 || given && hasTexture(m, kHasAnisotropy)) {
     if (hasTexture(m, kHasAnisotropy)) {
       vec3 texel = texture(anisotropyTexture, texcoord[4]).xyz;
       vec2 local = texel.xy * (255.0 / 127.0) - 128.0 / 127.0;
       direction = vec2(m.anisotropy.x * local.x - m.anisotropy.y * local.y, m.anisotropy.y * local.x + m.anisotropy.x * local.y);
       strength *= texel.z;
     }
-    s.alphaT = mix(alpha, 1.0, strength * strength);
+    if (!given && s.kind != kCookTorrance && s.kind != kBlinnPhong) s.alphaT = mix(alpha, 1.0, strength * strength);
   }
   vec3 along = tangent * direction.x + bitangent * direction.y;
   along -= s.n * dot(s.n, along);
   s.t = dot(along, along) > 1.0e-12 ? normalize(along) : anyTangent(s.n);
   s.b = cross(s.n, s.t);
 
-  s.f0 = mix(vec3(0.04), baseColor.rgb, metallic);
-  s.diffuse = baseColor.rgb * ((1.0 - metallic) * 0.96);
+  vec3 atNormal = m.specular.rgb;
+  float specular = m.specular.w;
+#if MATERIAL_TEXTURES > 5
+  if (hasTexture(m, kHasSpecular)) specular *= texture(specularTexture, texcoord[5]).a;
+  if (hasTexture(m, kHasSpecularColor)) atNormal *= texture(specularColorTexture, texcoord[6]).rgb;
+#endif
+  s.f0 = mix(min(atNormal, vec3(1.0)) * specular, baseColor.rgb, metallic);
+  s.f90 = mix(specular, 1.0, metallic);
+  if (m.fixedF0.w > 0.5) {
+    s.f0 = m.fixedF0.rgb;
+    s.f90 = 1.0;
+  }
+  s.diffuse = baseColor.rgb * (1.0 - metallic);
+#if CLEARCOAT
+  s.coat = m.coat.x;
+  float coatRoughness = m.coat.y;
+#if MATERIAL_TEXTURES > 5
+  if (hasTexture(m, kHasCoat)) s.coat *= texture(coatTexture, texcoord[7]).r;
+  if (hasTexture(m, kHasCoatRoughness)) coatRoughness *= texture(coatRoughnessTexture, texcoord[8]).g;
+#endif
+  s.coatRoughness = clamp(coatRoughness, 0.0, 1.0);
+#endif
   return s;
 }
 
@@ -118,7 +147,7 @@ void main() {
   else if (debugView == kDebugVisibility) radiance = vec3(broadVisibility(t, s.ng));
   else if (debugView == kDebugSsdf) radiance = signColor(ssdfAt(t, 2.0 * dot(s.n, s.wo) * s.n - s.wo));
   else {
-    radiance = shade(s, t) + m.emissive.rgb * (hasTexture(m, kHasEmissive) ? texture(emissiveTexture, texcoord[3]).rgb : vec3(1.0));
+    radiance = shade(s, t) + m.emissive.rgb * (hasTexture(m, kHasEmissive) ? texture(emissiveTexture, texcoord[3]).rgb : vec3(1.0)) * throughCoat(s);
   }
   color = vec4(radiance, m.textures.y == 2 ? baseColor.a : 1.0);
 }

@@ -6,7 +6,15 @@
 //  * smooth reflection: the view's SG lobes; each takes the prefiltered environment times its visible fraction, and where a light's shadow
 //    differs from the lobe's, the difference on that light's share (exact SG product).
 //  * rough reflection: the BRDF itself at the lights and at the fixed lobes; SG lobes fit it poorly there.
+#ifndef REFLECTANCE_MODELS
+#define REFLECTANCE_MODELS 0
+#define CLEARCOAT 0
+#endif
+#ifndef LOBES
+#define LOBES 0
+#endif
 #include "shaders/lobe/specular.glsl"
+#include "shaders/lobe/ndf.glsl"
 #include "shaders/lobe/sh.glsl"
 #include "shaders/lobe/display.glsl"
 #include "shaders/stage/transfer.glsl"
@@ -24,6 +32,9 @@ const int kAnisotropicTerms = 3;
 // Perceptual roughness from which the reflection passes from SG lobes to the BRDF at fixed lobes.
 const float kRoughFrom = 0.45;
 const float kRoughTo = 0.6;
+// The same of models with fitted lobes, which serve further.
+const float kModelRoughFrom = 0.5;
+const float kModelRoughTo = 0.65;
 // Lobes broader than this see the vertex's visible fractions instead of the half-space picture of the SSDF.
 const float kBroadFrom = 4.0;
 const float kBroadTo = 16.0;
@@ -39,11 +50,19 @@ struct Surface {
   vec3 wo;
   vec3 diffuse;     // base colour of the diffuse part
   vec3 f0;
+  float f90;
+  int kind;         // reflectance model
   float roughness;  // perceptual
   float alphaT;
   float alphaB;
   bool bumped;      // n may differ from ng
+#if CLEARCOAT
+  float coat;           // factor
+  float coatRoughness;  // perceptual
+#endif
 };
+
+vec3 fresnelColor(Surface s, float weight) { return s.f0 * (1.0 - weight) + s.f90 * weight; }
 
 bool anisotropic(Surface s) { return s.alphaT != s.alphaB; }
 
@@ -67,6 +86,7 @@ float horizonShare(Surface s, vec3 axis, float sharpness) {
 }
 
 bool shadowed() { return (uint(frame.counts.w) & kFlagShadows) != 0u; }
+bool energyCompensation() { return (uint(frame.counts.w) & kFlagEnergyCompensation) != 0u; }
 
 float visibleFraction(float distance, float sharpness) { return shadowed() ? ssdfVisibleFraction(distance, sharpness) : 1.0; }
 
@@ -182,12 +202,19 @@ vec3 diffuseLight(Surface s, Transfer t) {
   return irradiance;
 }
 
-// D V of the GGX reflection and Fc = (1 - wo.wh)^5, for the surface's two alphas.
+#if REFLECTANCE_MODELS || LOBES > 0
+#include "shaders/stage/models.glsl"
+#endif
+
+// The reflection (D V of GGX) and Fc = (1 - wo.wh)^5, for two widths as alpha.
 float reflectance(Surface s, vec3 wi, float alphaT, float alphaB, out float fresnel) {
   vec3 wh = s.wo + wi;
   wh *= inversesqrt(max(dot(wh, wh), 1.0e-12));
   fresnel = fresnelSchlickWeight(dot(s.wo, wh));
   float cosineIn = max(dot(s.n, wi), 0.0);
+#if REFLECTANCE_MODELS
+  if (s.kind != kGgx) return modelTimesCosine(modelOf(s.kind, alphaT, alphaB), tangentFrame(s, s.wo), tangentFrame(s, wi)) / max(cosineIn, kMinCosine);
+#endif
   float cosineOut = dot(s.n, s.wo);
   if (alphaT == alphaB) return ggxDistribution(max(dot(s.n, wh), 0.0), alphaT) * ggxVisibility(cosineOut, cosineIn, alphaT);
   vec3 localHalf = vec3(dot(wh, s.t), dot(wh, s.b), max(dot(wh, s.n), 0.0));
@@ -213,7 +240,7 @@ vec3 roughReflection(Surface s, Transfer t, vec3 albedo) {
     baseWeight += w * (1.0 - fresnel);
     edgeWeight += w * fresnel;
   }
-  vec3 result = s.f0 * base * (albedo.x / max(baseWeight, 1.0e-6)) + edge * (albedo.y / max(edgeWeight, 1.0e-6));
+  vec3 result = s.f0 * base * (albedo.x / max(baseWeight, 1.0e-6)) + s.f90 * edge * (albedo.y / max(edgeWeight, 1.0e-6));
   result = max(result, vec3(0.0));
   for (int l = 0; l < frame.counts.x; ++l) {
     vec4 light = frame.sgLights[l].axisSharpness;
@@ -223,7 +250,7 @@ vec3 roughReflection(Surface s, Transfer t, vec3 albedo) {
     float f = reflectance(s, cosineWeightedAxis(light.xyz, light.w, s.n), alphaUnderLight(s.alphaT, light.w), alphaUnderLight(s.alphaB, light.w), fresnel);
     float lightDistance;
     float v = lightShare(t, l, light.w, lightDistance) * horizonShare(s, light.xyz, light.w);
-    result += frame.sgLights[l].amplitude.rgb * (sgUnitIntegral(light.w) * cosineMean * f * v) * (s.f0 * (1.0 - fresnel) + fresnel);
+    result += frame.sgLights[l].amplitude.rgb * (sgUnitIntegral(light.w) * cosineMean * f * v) * fresnelColor(s, fresnel);
   }
   return result;
 }
@@ -251,7 +278,7 @@ vec3 smoothReflection(Surface s, Transfer t, vec3 albedo) {
       base += radiance * lobe.weight;
       edge += radiance * lobe.fresnelWeight;
     }
-    return s.f0 * base + edge;
+    return s.f0 * base + s.f90 * edge;
   }
   float baseWeight = 0.0, edgeWeight = 0.0;
   int parts = anisotropicPartCount(max(s.alphaT / s.alphaB, s.alphaB / s.alphaT));
@@ -266,10 +293,10 @@ vec3 smoothReflection(Surface s, Transfer t, vec3 albedo) {
       edgeWeight += lobe.fresnelWeight;
     }
   }
-  return s.f0 * base * (albedo.x / max(baseWeight, 1.0e-6)) + edge * (albedo.y / max(edgeWeight, 1.0e-6));
+  return s.f0 * base * (albedo.x / max(baseWeight, 1.0e-6)) + s.f90 * edge * (albedo.y / max(edgeWeight, 1.0e-6));
 }
 
-vec3 punctualLight(Surface s, Transfer t, vec3 diffuse) {
+vec3 punctualLight(Surface s, Transfer t, vec3 diffuse, vec3 gain) {
   vec3 sum = vec3(0.0);
   for (int l = 0; l < frame.counts.y; ++l) {
     PunctualLightBlock light = frame.punctualLights[l];
@@ -290,21 +317,76 @@ vec3 punctualLight(Surface s, Transfer t, vec3 diffuse) {
     if (cosineIn <= 0.0 || attenuation <= 0.0 || dot(s.ng, wi) <= 0.0) continue;
     float fresnel;
     float f = reflectance(s, wi, s.alphaT, s.alphaB, fresnel);
-    vec3 brdf = diffuse * (kOneOverPi * (1.0 - fresnel)) + f * (s.f0 * (1.0 - fresnel) + fresnel);
+    vec3 color = fresnelColor(s, fresnel);
+    vec3 brdf = diffuse * (kOneOverPi * (1.0 - largestOf(color))) + f * color * gain;
     sum += light.intensity.rgb * brdf * (cosineIn * attenuation * visibleFraction(ssdfAt(t, wi), kPunctualSharpness));
   }
   return sum;
 }
 
-vec3 shade(Surface s, Transfer t) {
-  float cosineOut = dot(s.n, s.wo);
-  // Of an anisotropic surface the mean of both directions' (within .03 for strength up to .6).
-  vec3 albedo = 0.5 * (albedoAt(sqrt(s.alphaT), cosineOut) + albedoAt(sqrt(s.alphaB), cosineOut));
+// GGX by SG lobes where it is smooth, by the BRDF itself where it is rough.
+vec3 ggxReflection(Surface s, Transfer t, vec3 albedo) {
+#if LOBES > 0
+  float broad = broadVisibility(t, 2.0 * dot(s.n, s.wo) * s.n - s.wo);
+  return stringReflection(s, t, modelOf(kGgx, s.alphaT, s.alphaB), LOBES, albedo.xy, broad);
+#else
   float rough = smoothstep(kRoughFrom, kRoughTo, sqrt(min(s.alphaT, s.alphaB)));
   vec3 reflected = vec3(0.0);
   if (rough < 1.0) reflected += (1.0 - rough) * smoothReflection(s, t, albedo);
   if (rough > 0.0) reflected += rough * roughReflection(s, t, albedo);
-  vec3 radiance = reflected;
-  if (largestOf(s.diffuse) > 0.0) radiance += s.diffuse * (1.0 - albedo.z) * kOneOverPi * diffuseLight(s, t);
-  return radiance + punctualLight(s, t, s.diffuse);
+  return reflected;
+#endif
+}
+
+// What the coat lets through to what lies under it (KHR_materials_clearcoat: Fresnel of F0 .04 at the mesh's own normal).
+float throughCoat(Surface s) {
+#if CLEARCOAT
+  return 1.0 - s.coat * (0.04 + 0.96 * fresnelSchlickWeight(dot(shadingNormalTowards(s.ng, s.wo), s.wo)));
+#else
+  return 1.0;
+#endif
+}
+
+#if CLEARCOAT
+vec3 coatReflection(Surface s, Transfer t) {
+  s.n = shadingNormalTowards(s.ng, s.wo);
+  s.bumped = false;
+  s.kind = kGgx;
+  s.roughness = s.coatRoughness;
+  s.alphaT = s.alphaB = clampAlpha(s.coatRoughness * s.coatRoughness);
+  s.f0 = vec3(1.0);
+  s.f90 = 1.0;
+  return ggxReflection(s, t, albedoAt(s.roughness, dot(s.n, s.wo))) + punctualLight(s, t, vec3(0.0), vec3(1.0));
+}
+#endif
+
+vec3 shade(Surface s, Transfer t) {
+  float cosineOut = dot(s.n, s.wo);
+  // Of an anisotropic surface the mean of both directions' (within .03 for strength up to .6).
+  vec3 albedo = 0.5 * (albedoAt(sqrt(s.alphaT), cosineOut) + albedoAt(sqrt(s.alphaB), cosineOut));
+  vec3 gain = vec3(1.0);
+  vec3 radiance;
+#if REFLECTANCE_MODELS
+  if (kModelLayers[s.kind] >= 0) {
+    ReflectanceModel m = modelOf(s.kind, s.alphaT, s.alphaB);
+    vec2 modelTotal = modelAlbedo(s, m);
+    float rough = LOBES > 0 ? 0.0 : smoothstep(kModelRoughFrom, kModelRoughTo, sqrt(min(s.alphaT, s.alphaB)));
+    radiance = vec3(0.0);
+    if (rough < 1.0) radiance += (1.0 - rough) * modelReflection(s, t, m, modelTotal);
+    if (rough > 0.0) radiance += rough * roughReflection(s, t, vec3(modelTotal, 0.0));
+  } else
+#endif
+  {
+    // What scatters more than once (Turquin 2019).
+    if (energyCompensation()) gain += s.f0 * (1.0 / clamp(albedo.x + albedo.y, 1.0e-3, 1.0) - 1.0);
+    radiance = ggxReflection(s, t, albedo) * gain;
+  }
+  float diffuseShare = 1.0 - (largestOf(s.f0) * (1.0 - albedo.z) + s.f90 * albedo.z);
+  if (largestOf(s.diffuse) > 0.0) radiance += s.diffuse * (diffuseShare * kOneOverPi) * diffuseLight(s, t);
+  radiance += punctualLight(s, t, s.diffuse, gain);
+#if CLEARCOAT
+  float through = throughCoat(s);
+  if (through < 1.0) radiance = through * radiance + (1.0 - through) * coatReflection(s, t);
+#endif
+  return radiance;
 }
