@@ -55,7 +55,7 @@ double coatDensity(const Brdf& brdf, glm::dvec3 wo, glm::dvec3 wi);
 double coatShare(const Brdf& brdf, glm::dvec3 wo);
 double reflectionShare(const Brdf& brdf, glm::dvec3 wo);
 
-/// Directional albedo of the brdf's GGX with F = 1, by 256 visible normals; error at most 5e-3, beyond 87 degrees 1e-2.
+/// Directional albedo of the brdf's GGX with F = 1, by 256 visible normals; error at most 5e-3, beyond 84 degrees 1e-2.
 double ggxAlbedo(const Brdf& brdf, glm::dvec3 wo);
 /// 1 + f0 (1 / albedo - 1) for GGX (Turquin, Practical Multiple Scattering Compensation for Microfacet Models, 2019), 1 for other models:
 /// with f0 = f90 = 1 all light comes back.

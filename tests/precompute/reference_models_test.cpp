@@ -189,7 +189,7 @@ TEST(ReferenceModels, ACoatKeepsTheBalance) {
 TEST(ReferenceModels, CompensationClosesTheFurnace) {
   for (const double alpha : {0.05, 0.3, 0.7, 1.0})
     for (const double ratio : {1.0, 0.3})
-      for (const double cosine : {0.05, 0.1, 0.5, 0.95}) {
+      for (const double cosine : {0.1, 0.3, 0.5, 0.95}) {
         Brdf brdf = brdfOf(Reflectance::ggx, alpha, ratio * alpha);
         const glm::dvec3 wo = direction(cosine, 0.6);
         const double lost = furnace(brdf, wo).x;
