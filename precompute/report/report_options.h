@@ -16,6 +16,9 @@ class App;
 
 namespace chiaro {
 
+/// What the third picture of a case shows: too bright and too dark, FLIP of what the screen shows, FLIP of radiance.
+enum class ErrorMapKind { difference, flip, hdrFlip };
+
 struct ReportOptions {
   std::filesystem::path scene;            ///< a baked .glb
   std::filesystem::path output;           ///< a folder, made where missing
@@ -29,6 +32,7 @@ struct ReportOptions {
   std::optional<float> exposure;  ///< absent: autoExposure() of each environment
   ToneMap toneMap = ToneMap::neutral;
   bool shadows = true;
+  ErrorMapKind errorMap = ErrorMapKind::difference;
   std::optional<double> failUnder;  ///< dB
   int threads = 0;
   bool quiet = false;
@@ -41,6 +45,7 @@ struct ReportOptionTexts {
   std::string camera = "auto";
   std::string exposure = "auto";
   std::string toneMap = "neutral";
+  std::string errorMap = "difference";
   bool noShadows = false;
 };
 
