@@ -34,13 +34,20 @@ constexpr const char* kExamples = R"(Examples:
 
 Exit codes: 0 done, 1 failed, 2 wrong usage, 3 unreadable input, 4 unwritable output, 5 under --fail-under, 130 interrupted.)";
 
-std::vector<CasePictures> writePictures(const Comparisons& comparisons, const std::filesystem::path& folder) {
+Image8 errorMapOf(const Comparison& one, ErrorMapKind kind) {
+  if (kind == ErrorMapKind::flip) return flipErrorMap(one.perceptual.flipMap, one.reference);
+  if (kind == ErrorMapKind::hdrFlip) return flipErrorMap(one.perceptual.hdrFlipMap, one.reference);
+  return errorMap(one.runtime, one.reference, one.display);
+}
+
+std::vector<CasePictures> writePictures(const Comparisons& comparisons, const ReportOptions& options) {
+  const std::filesystem::path& folder = options.output;
   std::vector<CasePictures> all;
   for (const Comparison& one : comparisons.cases) {
     CasePictures pictures;
     pictures.runtime = encodePng(displayImage(one.runtime, one.display.exposure, one.display.toneMap));
     pictures.reference = encodePng(displayImage(one.reference, one.display.exposure, one.display.toneMap));
-    pictures.error = encodePng(errorMap(one.runtime, one.reference, one.display));
+    pictures.error = encodePng(errorMapOf(one, options.errorMap));
     writeFileAtomically(folder / (one.name + "_runtime.png"), pictures.runtime);
     writeFileAtomically(folder / (one.name + "_reference.png"), pictures.reference);
     writeFileAtomically(folder / (one.name + "_error.png"), pictures.error);
@@ -105,7 +112,7 @@ ExitCode report(int argc, char** argv) {
   ReportFacts facts = factsOf(baked, options);
   facts.version = CHIARO_VERSION;
   makeReportFolder(options);
-  const std::vector<CasePictures> pictures = writePictures(comparisons, options.output);
+  const std::vector<CasePictures> pictures = writePictures(comparisons, options);
   writeFileAtomically(options.output / "report.json", reportJson(facts, options, comparisons));
   writeFileAtomically(options.output / "report.csv", reportCsv(comparisons));
   writeFileAtomically(options.output / "index.html", reportPage(facts, options, comparisons, pictures));

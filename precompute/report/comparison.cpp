@@ -136,6 +136,7 @@ Comparisons compareAll(const BakedScene& baked, const ReportOptions& options, co
           drawReference(changed.scene, light.environment, result.camera, options, progress, comparison);
       comparison.reference = meanOf(halves);
       comparison.difference = comparePictures(comparison.runtime, halves, comparison.display);
+      comparison.perceptual = comparePerceptually(comparison.runtime, comparison.reference, comparison.display, options.threads);
       result.cases.push_back(std::move(comparison));
     }
   }

@@ -10,6 +10,7 @@
 #include "assets/transfer/transfer.h"
 #include "precompute/bake.h"
 #include "precompute/report/metrics.h"
+#include "precompute/report/metrics/perceptual.h"
 #include "precompute/report/report_options.h"
 
 namespace chiaro {
@@ -23,6 +24,7 @@ struct Comparison {
   ImageRgba runtime;           ///< linear radiance, alpha coverage; same pixel centres as `reference`
   ImageRgba reference;
   PictureDifference difference;
+  PerceptualDifference perceptual;
   std::uint64_t rays = 0;
   double prepareSeconds = 0.0;  ///< environment prefiltering
   double runtimeSeconds = 0.0;  ///< upload and one frame, wall clock, until the pixels are back

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "precompute/report/metrics/magma.h"
+
 namespace chiaro {
 namespace {
 
@@ -30,6 +32,19 @@ Image8 errorMap(const ImageRgba& picture, const ImageRgba& reference, const Disp
     const double mean = (static_cast<double>(error.r) + static_cast<double>(error.g) + static_cast<double>(error.b)) / 3.0;
     const bool undefined = !std::isfinite(mean) || !std::isfinite(truth.a);
     const Color8 color = undefined ? kUndefined : truth.a > 0.5f ? colorOf(mean) : kNoObject;
+    map.texels.insert(map.texels.end(), {color[0], color[1], color[2], 255});
+  }
+  return map;
+}
+
+Image8 flipErrorMap(const MetricMap& flip, const ImageRgba& reference) {
+  Image8 map{reference.width, reference.height, {}};
+  map.texels.reserve(4 * reference.texels.size());
+  for (std::size_t i = 0; i < reference.texels.size(); ++i) {
+    const double value = flip.plane.values[i];
+    const float coverage = reference.texels[i].a;
+    const bool undefined = std::isnan(value) || !std::isfinite(coverage);
+    const Color8 color = undefined ? kUndefined : coverage > 0.5f ? magma(value) : kNoObject;
     map.texels.insert(map.texels.end(), {color[0], color[1], color[2], 255});
   }
   return map;

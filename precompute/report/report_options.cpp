@@ -43,6 +43,13 @@ std::optional<float> exposureFrom(const std::string& text) {
   return value;
 }
 
+ErrorMapKind errorMapFrom(const std::string& text) {
+  if (text == "difference") return ErrorMapKind::difference;
+  if (text == "flip") return ErrorMapKind::flip;
+  if (text == "hdr-flip") return ErrorMapKind::hdrFlip;
+  throw usageError("--error-map", "unknown error map \"" + text + "\"", "give difference, flip or hdr-flip");
+}
+
 std::string builtinNames() {
   std::string text;
   for (const std::string& name : builtinEnvironmentNames()) text += (text.empty() ? "" : ", ") + name;
@@ -108,6 +115,9 @@ void declareReportOptions(CLI::App& app, ReportOptions& options, ReportOptionTex
       ->capture_default_str();
   app.add_option("--tone-map", texts.toneMap, "neutral, aces or clamp")->type_name("NAME")->capture_default_str();
   app.add_flag("--no-shadows", texts.noShadows, "Compare without shadows, to see the error of shading alone");
+  app.add_option("--error-map", texts.errorMap, "difference (too bright, too dark), flip or hdr-flip")
+      ->type_name("NAME")
+      ->capture_default_str();
   app.add_option("--fail-under", options.failUnder, "Exit with 5 when a comparison is under this PSNR")->type_name("DB");
   app.add_option("--threads", options.threads, "CPU threads, 0 is all; never changes the figures")
       ->type_name("N")
@@ -124,6 +134,7 @@ void finishReportOptions(ReportOptions& options, const ReportOptionTexts& texts)
   for (const auto& text : texts.lights) options.lights.push_back(parseLightSpec(text));
   options.exposure = exposureFrom(texts.exposure);
   options.toneMap = toneMapFromName(texts.toneMap);
+  options.errorMap = errorMapFrom(texts.errorMap);
   options.shadows = !texts.noShadows;
   for (const float roughness : options.roughnesses) requireShare(roughness, "--roughness");
   if (options.metallic) requireShare(*options.metallic, "--metallic");

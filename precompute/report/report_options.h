@@ -17,6 +17,9 @@ class App;
 
 namespace chiaro {
 
+/// What the third picture of a case shows: too bright and too dark, FLIP of what the screen shows, FLIP of radiance.
+enum class ErrorMapKind { difference, flip, hdrFlip };
+
 struct ReportOptions {
   std::filesystem::path scene;            ///< a baked .glb
   std::filesystem::path output;           ///< a folder, made where missing
@@ -34,6 +37,7 @@ struct ReportOptions {
   std::optional<Reflectance> model;  ///< of every material
   bool energyCompensation = false;
   int lobes = 0;                     ///< RenderSettings::lobes
+  ErrorMapKind errorMap = ErrorMapKind::difference;
   std::optional<double> failUnder;  ///< dB
   int threads = 0;
   bool quiet = false;
@@ -48,6 +52,7 @@ struct ReportOptionTexts {
   std::string toneMap = "neutral";
   std::string model;
   std::vector<std::string> lights;
+  std::string errorMap = "difference";
   bool noShadows = false;
 };
 

@@ -22,6 +22,7 @@ th:first-child,td:first-child{text-align:left}
 .row{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(100%,18rem),1fr));gap:.7rem}
 figure{margin:0}img{width:100%;height:auto;display:block;background:#303030}
 .scale{height:.8rem;max-width:24rem;background:linear-gradient(90deg,#0ff,#00f,#000,#f00,#ff0)}
+.magma{height:.8rem;max-width:24rem;background:linear-gradient(90deg,#000004,#51127c,#b73779,#fc8961,#fcfdbf)}
 .ends{display:flex;justify-content:space-between;max-width:24rem}
 dt{float:left;clear:left;min-width:11rem;color:var(--soft)}dd{margin:0 0 0 11.5rem}
 )";
@@ -52,7 +53,8 @@ bool fails(const Comparison& one, const ReportOptions& options) {
 std::string table(const ReportOptions& options, const Comparisons& comparisons) {
   std::string html =
       "<div class=\"wide\"><table><tr><th>light, material</th><th>PSNR dB</th><th>RMSE</th><th>bias</th><th>worst</th>"
-      "<th>reference noise</th><th>PSNR without noise</th><th>pixels</th><th>undefined</th><th>outline differs</th></tr>\n";
+      "<th>reference noise</th><th>PSNR without noise</th><th>SSIM</th><th>FLIP</th><th>HDR "
+      "FLIP</th><th>pixels</th><th>undefined</th><th>outline differs</th></tr>\n";
   for (const Comparison& one : comparisons.cases) {
     const PictureDifference& d = one.difference;
     const auto cell = [&](const std::string& text, bool bad = false) {
@@ -66,6 +68,9 @@ std::string table(const ReportOptions& options, const Comparisons& comparisons) 
     cell(formatted("%.3f", d.worst));
     cell(formatted("%.4f", d.noise));
     cell(formatted("%.2f", psnrOf(d.rmseWithoutNoise)));
+    cell(formatted("%.4f", one.perceptual.ssim));
+    cell(formatted("%.4f", one.perceptual.flip));
+    cell(formatted("%.4f", one.perceptual.hdrFlip));
     cell(std::to_string(d.objectPixels));
     cell(std::to_string(d.undefinedPixels), d.undefinedPixels > 0);
     cell(std::to_string(d.coverageMismatches));
@@ -97,12 +102,27 @@ std::string settings(const ReportFacts& facts, const ReportOptions& options, con
   return html + "</dl>\n";
 }
 
+std::string errorMapLegend(ErrorMapKind kind) {
+  if (kind != ErrorMapKind::difference)
+    return std::string("<h2>Error maps</h2><p class=\"soft\">") +
+           (kind == ErrorMapKind::flip ? "FLIP of the pictures as shown" : "HDR FLIP, the worst of all exposures") +
+           ". Magenta is undefined, grey no object.</p>\n<div class=\"magma\"></div><div class=\"ends soft\"><span>0 equal</span>"
+           "<span>1</span></div>\n";
+  const std::string range = formatted("%.2g", kErrorMapRange);
+  std::string html;
+  html +=
+      "<h2>Error maps</h2><p class=\"soft\">Runtime minus reference, mean of the channels. Black is equal, magenta undefined, "
+      "grey no object.</p>\n";
+  html += "<div class=\"scale\"></div><div class=\"ends soft\"><span>&minus;" + range + " too dark</span><span>0</span><span>+" +
+          range + " too bright</span></div>\n";
+  return html;
+}
+
 }  // namespace
 
 std::string reportPage(const ReportFacts& facts, const ReportOptions& options, const Comparisons& comparisons,
                        const std::vector<CasePictures>& pictures) {
   const std::string scene = htmlText(options.scene.filename().string());
-  const std::string range = formatted("%.2g", kErrorMapRange);
   std::string html =
       "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
       "content=\"width=device-width,initial-scale=1\">\n<title>" +
@@ -116,11 +136,7 @@ std::string reportPage(const ReportFacts& facts, const ReportOptions& options, c
       "The reference is drawn in two halves with independent noise; how they differ gives the noise, and the PSNR without "
       "it.</p>\n";
   html += table(options, comparisons);
-  html +=
-      "<h2>Error maps</h2><p class=\"soft\">Runtime minus reference, mean of the channels. Black is equal, magenta undefined, "
-      "grey no object.</p>\n";
-  html += "<div class=\"scale\"></div><div class=\"ends soft\"><span>&minus;" + range + " too dark</span><span>0</span><span>+" +
-          range + " too bright</span></div>\n";
+  html += errorMapLegend(options.errorMap);
   for (std::size_t i = 0; i < comparisons.cases.size(); ++i) {
     const Comparison& one = comparisons.cases[i];
     html += "<h2 id=\"" + one.name + "\">" + titleOf(one) + ": " + formatted("%.2f dB", one.difference.psnr) +

@@ -29,6 +29,18 @@ std::string toneMapName(ToneMap toneMap) {
   return "?";
 }
 
+std::string errorMapName(ErrorMapKind kind) {
+  switch (kind) {
+    case ErrorMapKind::difference:
+      return "difference";
+    case ErrorMapKind::flip:
+      return "flip";
+    case ErrorMapKind::hdrFlip:
+      return "hdr-flip";
+  }
+  return "?";
+}
+
 Json caseJson(const Comparison& one) {
   const PictureDifference& d = one.difference;
   Json json;
@@ -46,6 +58,11 @@ Json caseJson(const Comparison& one) {
   json["rmse_without_noise"] = number(d.rmseWithoutNoise);
   json["psnr_without_noise_db"] = number(psnrOf(d.rmseWithoutNoise));
   json["reference_noise_rms"] = number(d.noise);
+  json["ssim"] = number(one.perceptual.ssim);
+  json["flip"] = number(one.perceptual.flip);
+  json["hdr_flip"] = number(one.perceptual.hdrFlip);
+  json["hdr_flip_exposures"] = {
+      {"start", one.perceptual.range.start}, {"stop", one.perceptual.range.stop}, {"count", one.perceptual.range.count}};
   json["exposure"] = number(static_cast<double>(one.display.exposure));
   json["environment_lights"] = one.lightCount;
   json["rays_traced"] = one.rays;
@@ -109,6 +126,7 @@ std::string reportJson(const ReportFacts& facts, const ReportOptions& options, c
                       comparisons.camera.worldFromCamera[3].z}}};
   json["gl"] = {{"renderer", comparisons.glRenderer}, {"version", comparisons.glVersion}};
   json["error_map_range"] = kErrorMapRange;
+  json["error_map"] = errorMapName(options.errorMap);
   json["lowest_psnr_db"] = number(lowestPsnr(comparisons));
   json["fail_under_db"] = options.failUnder ? Json(*options.failUnder) : Json(nullptr);
   json["cases"] = Json::array();
@@ -120,7 +138,7 @@ std::string reportCsv(const Comparisons& comparisons) {
   std::ostringstream csv;
   csv << "name,environment,roughness,psnr_db,rmse,mean_absolute,bias,worst,object_pixels,undefined_pixels,coverage_mismatches,"
          "rmse_without_noise,psnr_without_noise_db,reference_noise_rms,exposure,environment_lights,rays_traced,prepare_seconds,"
-         "runtime_seconds,reference_seconds\n";
+         "runtime_seconds,reference_seconds,ssim,flip,hdr_flip\n";
   csv.precision(9);
   const auto figure = [&](double value) {
     csv << ',';
@@ -136,7 +154,9 @@ std::string reportCsv(const Comparisons& comparisons) {
          {d.rmseWithoutNoise, psnrOf(d.rmseWithoutNoise), d.noise, static_cast<double>(one.display.exposure)})
       figure(value);
     csv << ',' << one.lightCount << ',' << one.rays;
-    for (const double value : {one.prepareSeconds, one.runtimeSeconds, one.referenceSeconds}) figure(value);
+    for (const double value : {one.prepareSeconds, one.runtimeSeconds, one.referenceSeconds, one.perceptual.ssim,
+                               one.perceptual.flip, one.perceptual.hdrFlip})
+      figure(value);
     csv << '\n';
   }
   return csv.str();

@@ -70,6 +70,7 @@ TEST_F(ReportFiles, UsageErrors) {
       {{kScene, "-o", "r", "--samples", "1"}, "--samples"},
       {{kScene, "-o", "r", "--exposure", "0"}, "--exposure"},
       {{kScene, "-o", "r", "--tone-map", "film"}, "--tone-map: unknown tone map \"film\""},
+      {{kScene, "-o", "r", "--error-map", "heat"}, "--error-map: unknown error map \"heat\""},
       {{kScene, "-o", "r", "--fail-under", "nan"}, "--fail-under"},
       {{kScene, "-o", "r", "--threads", "-1"}, "--threads"},
       {{kScene, "-o", "r", "--camera", "eye=1"}, "--camera"},
@@ -114,6 +115,11 @@ TEST_F(ReportPictures, WritesEverythingItSays) {
     EXPECT_GE(psnr, 20.0);
     EXPECT_GT(noise, 0.0);
     EXPECT_LE(one["rmse_without_noise"], 0.1);
+    // Near enough to be the same scene, noisy enough not to be the same picture.
+    EXPECT_TRUE(one["ssim"] > 0.5 && one["ssim"] < 1.0) << one["ssim"];
+    EXPECT_TRUE(one["flip"] > 0.0 && one["flip"] < 0.3) << one["flip"];
+    EXPECT_TRUE(one["hdr_flip"] > 0.0 && one["hdr_flip"] < 0.6) << one["hdr_flip"];
+    EXPECT_GE(one["hdr_flip_exposures"]["count"], 2);
     lowest = std::min(lowest, psnr);
     for (const auto& [kind, file] : one["pictures"].items()) {
       const Image8 image = readPng("full/" + file.get<std::string>());
@@ -143,6 +149,15 @@ TEST_F(ReportPictures, LimitDecidesTheExitCode) {
   expectFailure(strict, 5, "under the limit");
   EXPECT_TRUE(std::filesystem::exists("strict/index.html"));  // to look at what failed
   EXPECT_EQ(report(small("lenient", {"--fail-under", "5", "-q"})).code, 0);
+}
+
+TEST_F(ReportPictures, ErrorMapsOfFlip) {
+  ASSERT_EQ(report(small("difference", {"-q"})).code, 0);
+  ASSERT_EQ(report(small("flip", {"-q", "--error-map", "flip"})).code, 0);
+  ASSERT_EQ(report(small("hdr_flip", {"-q", "--error-map", "hdr-flip"})).code, 0);
+  EXPECT_NE(readFile("difference/white_error.png"), readFile("flip/white_error.png"));
+  EXPECT_NE(readFile("flip/white_error.png"), readFile("hdr_flip/white_error.png"));
+  EXPECT_EQ(readFile("difference/white_runtime.png"), readFile("flip/white_runtime.png"));
 }
 
 TEST_F(ReportPictures, SaysWhichLampsAreLeftOut) {
