@@ -19,7 +19,7 @@ double grooveMasking(const Vec3& wo, const Vec3& wi, const Vec3& wh) {
   return std::min(1.0, 2.0 * wh.z * std::min(wo.z, wi.z) / std::max(dot(wo, wh), 1e-9));
 }
 
-Reflectance abcReflectance(const AbcModel& m) {
+ReflectanceFunction abcReflectance(const AbcModel& m) {
   return [m](const Vec3& wo, const Vec3& wi) {
     if (!(wo.z > 0.0) || !(wi.z > 0.0)) return Vec3(0.0);
     const Vec3 wh = lobe64::halfVector(wo, wi);

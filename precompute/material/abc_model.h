@@ -14,7 +14,7 @@ struct AbcModel {
   double ior = 1.5;  ///< > 0
 };
 
-Reflectance abcReflectance(const AbcModel& model);
+ReflectanceFunction abcReflectance(const AbcModel& model);
 
 /// Fresnel's equations for unpolarised light, cosine in [0, 1]; 1 at total reflection.
 double dielectricFresnel(double cosine, double ior);

@@ -10,7 +10,7 @@ namespace chiaro {
 
 using lobe64::Vec3;
 
-std::vector<FitSample> fitSamples(const Reflectance& reflectance, double widest, const FitGrid& grid, const std::string& where) {
+std::vector<FitSample> fitSamples(const ReflectanceFunction& reflectance, double widest, const FitGrid& grid, const std::string& where) {
   constexpr std::size_t kLeast = 100;
   const double least = std::cos(widest);
   const std::size_t stepD = MerlTable::kThetaDiff / static_cast<std::size_t>(grid.thetaDiff),

@@ -23,6 +23,6 @@ struct FitGrid {
 
 /// Pairs whose directions are both at most `widest` radians from the normal and where `reflectance` says something (not NaN, not negative). Bins'
 /// centres, each for its measure. Throws Error (unreadableInput), with `where`, when there are fewer than 100.
-std::vector<FitSample> fitSamples(const Reflectance& reflectance, double widest, const FitGrid& grid, const std::string& where);
+std::vector<FitSample> fitSamples(const ReflectanceFunction& reflectance, double widest, const FitGrid& grid, const std::string& where);
 
 }  // namespace chiaro

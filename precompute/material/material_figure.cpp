@@ -25,7 +25,7 @@ Curve curveOf(std::string name, int colour, bool dashed) {
 }
 
 /// rho (n.wi) with the half vector leaning by `half` towards the viewer.
-double slice(const Reflectance& reflectance, double view, double half) {
+double slice(const ReflectanceFunction& reflectance, double view, double half) {
   const double light = view - 2.0 * half;  // in the plane of incidence, the viewer's side is negative
   if (!(std::abs(light) < lobe64::kHalfPi)) return lobe64::notANumber();
   const Vec3 wo(-std::sin(view), 0.0, std::cos(view)), wi(std::sin(light), 0.0, std::cos(light));
@@ -69,7 +69,7 @@ Figure materialFigure(const MaterialData& data, const MaterialStudy& study) {
                 .logX = true,
                 .logY = true,
                 .curves = {}};
-  const Reflectance fit = studiedReflectance(study);
+  const ReflectanceFunction fit = studiedReflectance(study);
   int colour = 0;
   for (const int view : {0, 30, 60, 75}) {
     Curve truth = curveOf("data, " + std::to_string(view) + " deg", colour, false),

@@ -19,7 +19,7 @@ const char* formName(MaterialForm form);
 struct MaterialData {
   std::string name;  ///< the row's, or the file's without its endings
   MaterialForm form = MaterialForm::merl;
-  Reflectance reflectance;        ///< empty for a distribution alone
+  ReflectanceFunction reflectance;        ///< empty for a distribution alone
   std::optional<NdfTable> ndf;    ///< then this
   std::optional<NganModel> ngan;  ///< what `reflectance` is made of, in a table of Ngan's
 };

@@ -287,7 +287,7 @@ MaterialFit fitMaterial(const std::vector<FitSample>& samples, const FitFamily& 
   return best;
 }
 
-Reflectance fittedReflectance(const FitFamily& family, const MaterialFit& fit) {
+ReflectanceFunction fittedReflectance(const FitFamily& family, const MaterialFit& fit) {
   return [family, fit](const Vec3& wo, const Vec3& wi) {
     if (!(wo.z > 0.0) || !(wi.z > 0.0)) return Vec3(0.0);
     const double w = lobe64::fresnelSchlickWeight(dot(wo, lobe64::halfVector(wo, wi)));

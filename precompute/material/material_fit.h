@@ -60,6 +60,6 @@ inline constexpr double kLeastFitWidth = 1e-3, kMostFitWidth = 1.0;
 MaterialFit fitMaterial(const std::vector<FitSample>& samples, const FitFamily& family, const FitOptions& options);
 
 /// rho of a fit.
-Reflectance fittedReflectance(const FitFamily& family, const MaterialFit& fit);
+ReflectanceFunction fittedReflectance(const FitFamily& family, const MaterialFit& fit);
 
 }  // namespace chiaro

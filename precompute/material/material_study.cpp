@@ -58,7 +58,7 @@ MaterialStudy studyMaterial(const MaterialData& data, const MaterialOptions& opt
   return study;
 }
 
-Reflectance studiedReflectance(const MaterialStudy& study) {
+ReflectanceFunction studiedReflectance(const MaterialStudy& study) {
   return fittedReflectance(modelFamily(study.chosen().kind), study.chosen().fit);
 }
 

@@ -48,6 +48,6 @@ struct MaterialStudy {
 MaterialStudy studyMaterial(const MaterialData& data, const MaterialOptions& options);
 
 /// The chosen model as a function; for a distribution alone, with F = 1 and no diffuse part.
-Reflectance studiedReflectance(const MaterialStudy& study);
+ReflectanceFunction studiedReflectance(const MaterialStudy& study);
 
 }  // namespace chiaro

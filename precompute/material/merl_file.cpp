@@ -123,7 +123,7 @@ MerlTable readMerlFile(const std::filesystem::path& path) {
   return readMerl(bytes, path.string());
 }
 
-std::vector<std::uint8_t> merlFileOf(const Reflectance& reflectance) {
+std::vector<std::uint8_t> merlFileOf(const ReflectanceFunction& reflectance) {
   std::vector<std::uint8_t> file;
   file.reserve(MerlTable::kFileBytes);
   const auto append = [&](std::uint64_t word, int bytes) {

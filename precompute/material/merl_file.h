@@ -46,6 +46,6 @@ MerlTable readMerl(std::span<const std::uint8_t> file, const std::string& where)
 MerlTable readMerlFile(const std::filesystem::path& path);
 
 /// The file of a table, for tools and tests: where `reflectance` is NaN, and below the surface, -1.
-std::vector<std::uint8_t> merlFileOf(const Reflectance& reflectance);
+std::vector<std::uint8_t> merlFileOf(const ReflectanceFunction& reflectance);
 
 }  // namespace chiaro

@@ -53,7 +53,7 @@ double nganLobe(const NganLobe& l, const Vec3& wo, const Vec3& wi) {
   return 0.25 * grooveMasking(wo, wi, wh) * gaussian / (cos2 * cos2 * wo.z * wi.z);
 }
 
-Reflectance nganReflectance(const NganModel& model) {
+ReflectanceFunction nganReflectance(const NganModel& model) {
   return [model](const Vec3& wo, const Vec3& wi) {
     if (!(wo.z > 0.0) || !(wi.z > 0.0)) return Vec3(0.0);
     const double w = lobe64::fresnelSchlickWeight(dot(wo, lobe64::halfVector(wo, wi)));

@@ -42,7 +42,7 @@ struct NganModel {
   std::vector<NganLobe> lobes;
 };
 
-Reflectance nganReflectance(const NganModel& model);
+ReflectanceFunction nganReflectance(const NganModel& model);
 
 /// Reads `Lambertian scale=(r,g,b) | CookTorrance scale=(r,g,b) m=.. F0=.. | ...`. Throws Error (unreadableInput) with `where` and `line`.
 NganModel parseNganModel(const std::string& text, const std::string& where, std::size_t line);

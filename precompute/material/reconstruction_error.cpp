@@ -29,7 +29,7 @@ double lobeSum(const NdfMixture& mixture, const Vec3& wo, const Vec3& wi, LobeWa
 
 }  // namespace
 
-double reconstructionError(const std::vector<FitSample>& samples, const Reflectance& reconstruction) {
+double reconstructionError(const std::vector<FitSample>& samples, const ReflectanceFunction& reconstruction) {
   double error2 = 0.0, norm2 = 0.0;
   for (const FitSample& s : samples) {
     const double truth = luminance(s.rho) * s.wi.z * s.wo.z,
@@ -40,7 +40,7 @@ double reconstructionError(const std::vector<FitSample>& samples, const Reflecta
   return error2 / norm2;
 }
 
-Reflectance mixtureReflectance(int kind, const MaterialFit& fit, const NdfMixture& mixture, LobeWarp warp) {
+ReflectanceFunction mixtureReflectance(int kind, const MaterialFit& fit, const NdfMixture& mixture, LobeWarp warp) {
   const auto model = modelOf(kind, fit.width);
   FitFamily family{
       .name = modelJsonName(kind),

@@ -11,7 +11,7 @@
 namespace chiaro {
 
 /// Sum of (rho - rho^R)^2 ((n.wi) (n.wo))^2 by that of rho alone, of luminances, over the samples, weighted by their solid angles.
-double reconstructionError(const std::vector<FitSample>& samples, const Reflectance& reconstruction);
+double reconstructionError(const std::vector<FitSample>& samples, const ReflectanceFunction& reconstruction);
 
 /// How the lobes of a distribution become lobes of light.
 enum class LobeWarp {
@@ -22,7 +22,7 @@ enum class LobeWarp {
 
 /// A fitted material with the mixture in place of its distribution; smooth factor, Fresnel and the diffuse part stay as they are. The family is
 /// one of modelFamily. `mixture`: of the distribution with peak 1.
-Reflectance mixtureReflectance(int kind, const MaterialFit& fit, const NdfMixture& mixture, LobeWarp warp);
+ReflectanceFunction mixtureReflectance(int kind, const MaterialFit& fit, const NdfMixture& mixture, LobeWarp warp);
 
 /// The distribution of a fit's lobes by angle, peak 1 at the normal, as ndf.glsl has it.
 std::function<double(double)> fittedNdf(int kind, double width);

@@ -25,7 +25,7 @@ double channel(const SgdChannel& m, double cosO, double cosI, double tan2Half, d
 
 }  // namespace
 
-Reflectance sgdReflectance(const std::array<SgdChannel, 3>& channels) {
+ReflectanceFunction sgdReflectance(const std::array<SgdChannel, 3>& channels) {
   return [channels](const Vec3& wo, const Vec3& wi) {
     if (!(wo.z > 0.0) || !(wi.z > 0.0)) return Vec3(0.0);
     const Vec3 wh = lobe64::halfVector(wo, wi);

@@ -16,6 +16,6 @@ struct SgdChannel {
          theta0 = 0.0;
 };
 
-Reflectance sgdReflectance(const std::array<SgdChannel, 3>& channels);
+ReflectanceFunction sgdReflectance(const std::array<SgdChannel, 3>& channels);
 
 }  // namespace chiaro

@@ -26,7 +26,7 @@ Frame frameOf(const Vec3& n) {
 
 }  // namespace
 
-ImageRgba spherePicture(const std::vector<Reflectance>& reflectances, const Environment& environment,
+ImageRgba spherePicture(const std::vector<ReflectanceFunction>& reflectances, const Environment& environment,
                         const SphereOptions& options) {
   const reference::EnvironmentSampler light(environment, glm::mat3(1.0f));
   reference::Brdf sampler;

@@ -17,7 +17,7 @@ struct SphereOptions {
 
 /// One unit sphere for each reflectance, side by side, lit without shadows, seen from +Z without perspective. All take the same directions, so
 /// that they differ by what they reflect and not by noise. Alpha is 1 on a sphere. A reflectance that is NaN or negative counts as 0.
-ImageRgba spherePicture(const std::vector<Reflectance>& reflectances, const Environment& environment,
+ImageRgba spherePicture(const std::vector<ReflectanceFunction>& reflectances, const Environment& environment,
                         const SphereOptions& options);
 
 }  // namespace chiaro

@@ -159,7 +159,7 @@ ExitCode materialProgram(int argc, const char* const* argv) {
   throwIfInterrupted();
 
   const Environment environment = loadEnvironment(options.environment);
-  std::vector<Reflectance> shown{studiedReflectance(study)};
+  std::vector<ReflectanceFunction> shown{studiedReflectance(study)};
   if (data.reflectance) shown.insert(shown.begin(), data.reflectance);
   const SphereOptions sphere{
       .size = options.size, .samples = options.samples, .width = study.chosen().fit.width, .threads = options.threads};

@@ -32,10 +32,10 @@ MaterialFit known(double width, const Vec3& diffuse, const Vec3& f0, double f90 
   return fit;
 }
 
-std::vector<FitSample> samplesOf(const Reflectance& reflectance) { return fitSamples(reflectance, kWidestMeasured, {}, "data"); }
+std::vector<FitSample> samplesOf(const ReflectanceFunction& reflectance) { return fitSamples(reflectance, kWidestMeasured, {}, "data"); }
 
 /// Through a file's bytes and back, linear look-up and all.
-Reflectance throughMerl(const Reflectance& reflectance) {
+ReflectanceFunction throughMerl(const ReflectanceFunction& reflectance) {
   const auto table = std::make_shared<const MerlTable>(readMerl(merlFileOf(reflectance), "synthetic"));
   return [table](const Vec3& wo, const Vec3& wi) { return table->at(halfDifference(wo, wi)); };
 }

@@ -32,7 +32,7 @@ std::string merlName(const std::string& name) { return name.starts_with("MERL-")
 std::string plainName(const std::string& name) { return name.substr(0, name.find('.')); }
 
 /// The nine lobes that a shader reads, for a viewer anywhere.
-Reflectance shaderReflectance(const ReflectanceTable& table, const MaterialFit& fit) {
+ReflectanceFunction shaderReflectance(const ReflectanceTable& table, const MaterialFit& fit) {
   return [&table, fit](const Vec3& wo, const Vec3& wi) {
     const double sine = std::hypot(wo.x, wo.y), x = sine > 0.0 ? wo.x / sine : 1.0, y = sine > 0.0 ? wo.y / sine : 0.0;
     const Vec3 turned(x * wi.x + y * wi.y, x * wi.y - y * wi.x, wi.z);
@@ -58,7 +58,7 @@ FitFamily nganFamily(NganFamily family) {
 }
 
 /// Root mean square of the differences of rho cos.
-double cosineError(const std::vector<FitSample>& samples, const Reflectance& reflectance) {
+double cosineError(const std::vector<FitSample>& samples, const ReflectanceFunction& reflectance) {
   double sum = 0.0;
   for (const FitSample& s : samples) {
     const Vec3 difference = (reflectance(s.wo, s.wi) - s.rho) * s.wi.z;
