@@ -9,8 +9,9 @@
 #include <random>
 
 #include "precompute/compression/encode.h"
-#include "precompute/lobe_samples.h"
+#include "precompute/lobe_pattern.h"
 #include "precompute/parallel.h"
+#include "precompute/random_directions.h"
 #include "shaders/cpp/lobe.h"
 
 namespace chiaro {
@@ -112,12 +113,12 @@ double quantisationRms(const TracedSignal& traced, const Pca& pca, const Transfe
 }
 
 /// On the axis' side of the surface; beyond the horizon the truth is the mirror image of what is before it.
-double tracedFraction(const RayScene& rays, const Viewpoint& viewpoint, glm::dvec3 axis, const LobeRays& lobe, double turn) {
+double tracedFraction(const RayScene& rays, const Viewpoint& viewpoint, glm::dvec3 axis, const LobePattern& lobe, double turn) {
   const bool front = glm::dot(glm::vec3(axis), viewpoint.normal) > 0.0f;
   const auto n = front ? viewpoint.normal : -viewpoint.normal;
   const auto origin = front ? viewpoint.front : viewpoint.back;
   std::uint32_t seen = 0;
-  std::array<glm::vec3, kRays> directions;
+  std::vector<glm::vec3> directions;
   lobe.directions(axis, turn, directions);
   for (auto w : directions) {
     const float cosine = glm::dot(w, n);
@@ -134,7 +135,7 @@ struct FractionError {
 FractionError fractionError(const TracedSignal& traced, const Transfer& transfer, const BakeSettings& settings, StepCounter& steps) {
   const auto& grid = *traced.grid;
   const auto vertices = sampleVertices(traced.viewpoints->size(), kSampledVertices, settings.seed + 1);
-  std::vector<LobeRays> lobes;
+  std::vector<LobePattern> lobes;
   for (const auto sharpness : kSharpness) lobes.emplace_back(sharpness, kRays);
   std::vector<FractionError> parts(vertices.size());
   parallelBlocks(settings.threads, vertices.size(), [&](std::size_t i) {

@@ -7,8 +7,9 @@
 #include <random>
 
 #include "assets/transfer/row_decoder.h"
-#include "precompute/lobe_samples.h"
+#include "precompute/lobe_pattern.h"
 #include "precompute/parallel.h"
+#include "precompute/random_directions.h"
 #include "precompute/traced_share.h"
 #include "precompute/transfer_lookup.h"
 #include "shaders/cpp/lobe.h"
@@ -41,13 +42,13 @@ ClusteredTruth::ClusteredTruth(const RayScene& rays, const std::vector<Viewpoint
     vertices_.push_back(static_cast<std::uint32_t>(uniform(random) * static_cast<double>(viewpoints.size())));
   exact_.resize(count * rows.size());
   axes_.resize(count);
-  std::vector<LobeRays> lobeRays;
-  for (const auto sharpness : kSharpness) lobeRays.emplace_back(sharpness, kRays);
+  std::vector<LobePattern> patterns;
+  for (const auto sharpness : kSharpness) patterns.emplace_back(sharpness, kRays);
   StepCounter steps(count, progress);
   parallelBlocks(threads_, blocks(count), [&](std::size_t block) {
     const auto begin = block * kBlock, n = std::min(kBlock, count - begin);
     rows(std::span<const std::uint32_t>(vertices_).subspan(begin, n), exact_.data() + begin * rows.size(), rows.size());
-    std::vector<glm::vec3> directions(kRays);
+    std::vector<glm::vec3> directions;
     for (std::size_t i = begin; i < begin + n; ++i) {
       const auto& viewpoint = viewpoints[vertices_[i]];
       std::mt19937 own(settings.seed ^ vertices_[i]);
@@ -62,7 +63,7 @@ ClusteredTruth::ClusteredTruth(const RayScene& rays, const std::vector<Viewpoint
         const auto normal = front ? viewpoint.normal : -viewpoint.normal;
         auto& lobes = axes_[i].emplace_back(Axis{.axis = axis, .aboveHorizon = {}, .visible = {}});
         for (std::size_t s = 0; s < kSharpness.size(); ++s) {
-          lobeRays[s].directions(axis, turn, directions);
+          patterns[s].directions(axis, turn, directions);
           lobes.visible[s] = tracedShare(rays, front ? viewpoint.front : viewpoint.back, normal, directions);
           lobes.aboveHorizon[s] = lobe64::sgHalfSpaceFraction(glm::dot(axis, glm::dvec3(normal)), static_cast<double>(kSharpness[s]));
         }

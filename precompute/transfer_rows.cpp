@@ -6,6 +6,7 @@
 #include "precompute/elapsed.h"
 #include "precompute/ssdf/ssdf.h"
 #include "precompute/visibility/visibility.h"
+#include "precompute/z_curve.h"
 #include "shaders/cpp/lobe.h"
 
 namespace chiaro {
@@ -31,9 +32,7 @@ std::vector<std::size_t> byNormal(std::span<const std::uint32_t> vertices, const
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     const auto place = lobe32::octahedralEncode(viewpoints[vertices[i]].normal) * static_cast<float>(kSide);
     const auto cell = [](float x) { return static_cast<unsigned>(std::clamp(x, 0.0f, kSide - 1.0f)); };
-    unsigned key = 0;  // along a Z curve
-    for (unsigned bit = kSide / 2; bit > 0; bit /= 2) key = 4 * key + ((cell(place.y) & bit) != 0 ? 2 : 0) + ((cell(place.x) & bit) != 0 ? 1 : 0);
-    keyed.emplace_back(key, i);
+    keyed.emplace_back(zCurve(cell(place.x), cell(place.y), kSide), i);
   }
   std::sort(keyed.begin(), keyed.end());
   std::vector<std::size_t> order;

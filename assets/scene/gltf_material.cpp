@@ -243,7 +243,7 @@ class MaterialReader {
     const std::string where = label_ + " has in CHIARO_materials_reflectance ";
     const std::string name = value->Has("model") && value->Get("model").IsString() ? value->Get("model").Get<std::string>() : "";
     const auto model = reflectanceFromName(name);
-    if (!model) throw inputError(path_.string(), where + (name.empty() ? "no model" : "the unknown model \"" + name + "\""), "name one of " + allNames());
+    if (!model) throw inputError(path_.string(), where + (name.empty() ? "no model" : "the unknown model \"" + name + "\""), "name one of " + reflectanceNameList());
     material.reflectance = *model;
     if (const auto width = numbers<2>(*value, "width")) {
       if (!((*width)[0] > 0.0 && (*width)[1] > 0.0))
@@ -259,12 +259,6 @@ class MaterialReader {
       material.reflectanceF0.emplace(0.0f);
       for (int c = 0; c < 3; ++c) (*material.reflectanceF0)[c] = within((*color)[static_cast<std::size_t>(c)], 0, 1, "specularColor");
     }
-  }
-
-  static std::string allNames() {
-    std::string all;
-    for (const auto& name : reflectanceNames()) all += (all.empty() ? "" : ", ") + name;
-    return all;
   }
 
   /// An extension of the material, where it is an object.

@@ -34,13 +34,11 @@ std::optional<Reflectance> modelFromOption(const std::string& name) {
   if (name.empty()) return std::nullopt;
   const auto model = reflectanceFromName(name);
   if (model) return model;
-  std::string all;
-  for (const auto& known : reflectanceNames()) all += (all.empty() ? "" : ", ") + known;
-  throw usageError("--model", "unknown model \"" + name + "\"", "give one of " + all);
+  throw usageError("--model", "unknown model \"" + name + "\"", "give one of " + reflectanceNameList());
 }
 
-void requireLobes(int lobes) {
-  if (lobes != 0 && (lobes < 0 || lobes > 9 || lobes % 2 == 0)) throw usageError("--lobes", std::to_string(lobes) + " is not 0, 1, 3, 5, 7 or 9", "give one of them");
+void requireLobes(int lobes, const std::string& where) {
+  if (lobes != 0 && (lobes < 0 || lobes > 9 || lobes % 2 == 0)) throw usageError(where, std::to_string(lobes) + " is not 0, 1, 3, 5, 7 or 9", "give one of them");
 }
 
 void nameDefaultMaterial(Scene& scene) {

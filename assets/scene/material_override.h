@@ -17,8 +17,8 @@ struct MaterialOverride {
 
 /// What --model names, nothing for an empty text. Throws Error (usage).
 std::optional<Reflectance> modelFromOption(const std::string& name);
-/// What --lobes may be: 0, 1, 3, 5, 7 or 9. Throws Error (usage).
-void requireLobes(int lobes);
+/// How many SG lobes a material may be drawn with: 0 (the best known), 1, 3, 5, 7 or 9. `where` names the setting in an Error (usage).
+void requireLobes(int lobes, const std::string& where);
 
 /// Gives every primitive without a material the glTF default one as a material of the scene, so that it can be edited.
 void nameDefaultMaterial(Scene& scene);

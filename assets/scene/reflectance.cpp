@@ -10,6 +10,12 @@ const std::vector<std::string>& reflectanceNames() {
   return kNames;
 }
 
+std::string reflectanceNameList() {
+  std::string all;
+  for (const auto& name : reflectanceNames()) all += (all.empty() ? "" : ", ") + name;
+  return all;
+}
+
 std::optional<Reflectance> reflectanceFromName(const std::string& name) {
   const auto& names = reflectanceNames();
   const auto found = std::find(names.begin(), names.end(), name);

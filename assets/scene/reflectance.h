@@ -13,6 +13,8 @@ inline constexpr int kReflectanceCount = 6;
 
 /// As files and options spell them, in the order of Reflectance.
 const std::vector<std::string>& reflectanceNames();
+/// All of them in one line, for messages and help.
+std::string reflectanceNameList();
 std::optional<Reflectance> reflectanceFromName(const std::string& name);
 
 /// Whether a width is the exponent of a cosine: Blinn-Phong, Ashikhmin-Shirley.

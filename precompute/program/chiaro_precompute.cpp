@@ -3,13 +3,13 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <iostream>
 #include <map>
 #include <numbers>
 #include <string_view>
 
 #include "assets/builtin/builtin_scene.h"
 #include "assets/file.h"
+#include "assets/program/command_line.h"
 #include "assets/program/interrupt.h"
 #include "assets/program/program.h"
 #include "assets/program/progress_bar.h"
@@ -241,14 +241,7 @@ ExitCode precompute(int argc, char** argv) {
   app.set_version_flag("--version", "chiaro-precompute " CHIARO_VERSION);
   Options options;
   declare(app, options);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::Success& asked) {  // --help, --version
-    app.exit(asked, std::cout, std::cerr);
-    return ExitCode::done;
-  } catch (const CLI::ParseError& error) {
-    throw usageError("command line", error.what(), "see chiaro-precompute --help");
-  }
+  if (!readCommandLine(app, argc, argv)) return ExitCode::done;
   finish(options);
   catchInterrupts();
 

@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
-#include <iostream>
 #include <map>
 
 #include "assets/builtin/environment.h"
 #include "assets/file.h"
 #include "assets/image/display.h"
+#include "assets/program/command_line.h"
 #include "assets/program/interrupt.h"
 #include "precompute/material/material_figure.h"
 #include "precompute/material/material_output.h"
@@ -144,14 +144,7 @@ ExitCode materialProgram(int argc, const char* const* argv) {
   app.set_version_flag("--version", "chiaro-precompute " CHIARO_VERSION);
   Options options;
   declare(app, options);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::Success& asked) {  // --help, --version
-    app.exit(asked, std::cout, std::cerr);
-    return ExitCode::done;
-  } catch (const CLI::ParseError& error) {
-    throw usageError("command line", error.what(), "see chiaro-precompute material --help");
-  }
+  if (!readCommandLine(app, argc, argv)) return ExitCode::done;
   MaterialOptions material = finish(options);
   catchInterrupts();
   const MaterialData data = readMaterial(options.file, options.row);

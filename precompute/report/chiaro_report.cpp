@@ -1,10 +1,10 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
-#include <iostream>
 #include <string_view>
 
 #include "assets/file.h"
+#include "assets/program/command_line.h"
 #include "assets/program/interrupt.h"
 #include "assets/program/program.h"
 #include "assets/program/progress_bar.h"
@@ -87,14 +87,7 @@ ExitCode report(int argc, char** argv) {
   ReportOptions options;
   ReportOptionTexts texts;
   declareReportOptions(app, options, texts);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::Success& asked) {  // --help, --version
-    app.exit(asked, std::cout, std::cerr);
-    return ExitCode::done;
-  } catch (const CLI::ParseError& error) {
-    throw usageError("command line", error.what(), "see chiaro-report --help");
-  }
+  if (!readCommandLine(app, argc, argv)) return ExitCode::done;
   finishReportOptions(options, texts);
   catchInterrupts();
 

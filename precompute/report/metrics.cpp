@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "assets/error.h"
+#include "precompute/report/metrics/rmse.h"
 
 namespace chiaro {
 namespace {
@@ -46,7 +47,7 @@ class Mean {
 
 double psnrOf(double rmse) {
   if (std::isnan(rmse)) return rmse;
-  return rmse <= 0.0 ? kHighestPsnr : std::min(kHighestPsnr, -20.0 * std::log10(rmse));
+  return rmse <= 0.0 ? kHighestPsnr : std::min(kHighestPsnr, peakSignalToNoise(rmse));
 }
 
 ImageRgba meanOf(const ReferenceHalves& halves) {

@@ -92,7 +92,7 @@ void declareReportOptions(CLI::App& app, ReportOptions& options, ReportOptionTex
       ->type_name("R")
       ->allow_extra_args(false);
   app.add_option("--metallic", options.metallic, "Metalness of every material, 0 to 1")->type_name("M");
-  app.add_option("--model", texts.model, "Reflectance model of every material: ggx, cookTorrance, beckmann, blinnPhong, ward or ashikhminShirley")
+  app.add_option("--model", texts.model, "Reflectance model of every material: " + reflectanceNameList())
       ->type_name("NAME");
   app.add_flag("--energy-compensation", options.energyCompensation, "GGX gives back what scatters more than once, in both pictures");
   app.add_option("--lobes", options.lobes, "1, 3, 5, 7 or 9 lobes strung for every material; 0 is the best known")
@@ -139,7 +139,7 @@ void finishReportOptions(ReportOptions& options, const ReportOptionTexts& texts)
   for (const float roughness : options.roughnesses) requireShare(roughness, "--roughness");
   if (options.metallic) requireShare(*options.metallic, "--metallic");
   options.model = modelFromOption(texts.model);
-  requireLobes(options.lobes);
+  requireLobes(options.lobes, "--lobes");
   if (options.supersample < 1 || options.supersample > 8)
     throw usageError("--supersample", "must lie between 1 and 8", "give 2 to filter edges and textures");
   if (options.samples < 2 || options.samples > kMostSamples)

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "assets/error.h"
+#include "assets/scene/material_override.h"
 #include "runtime/brdf/specular_table.h"
 #include "runtime/gl/framebuffer.h"
 #include "runtime/gl/program.h"
@@ -329,8 +330,7 @@ void Renderer::setMaterials(const std::vector<Material>& materials) { impl_->sce
 void Renderer::render(const Camera& camera, const RenderSettings& settings) {
   if (settings.width < 1 || settings.height < 1 || settings.supersample < 1 || settings.supersample > 8)
     throw usageError("size", "a picture needs at least one pixel and 1 to 8 samples a side", "check width, height and supersample");
-  if (settings.lobes != 0 && (settings.lobes < 1 || settings.lobes > 9 || settings.lobes % 2 == 0))
-    throw usageError("lobes", std::to_string(settings.lobes) + " is not 0, 1, 3, 5, 7 or 9", "give one of them");
+  requireLobes(settings.lobes, "lobes");
   impl_->render(camera, settings);
 }
 

@@ -1,6 +1,6 @@
 #include <CLI/CLI.hpp>
-#include <iostream>
 
+#include "assets/program/command_line.h"
 #include "assets/program/program.h"
 #include "runtime/viewer/view_options.h"
 #include "runtime/viewer/view_run.h"
@@ -28,14 +28,7 @@ chiaro::ExitCode view(int argc, char** argv) {
   chiaro::ViewOptions options;
   chiaro::ViewOptionTexts texts;
   chiaro::declareViewOptions(app, options, texts);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::Success& asked) {  // --help, --version
-    app.exit(asked, std::cout, std::cerr);
-    return chiaro::ExitCode::done;
-  } catch (const CLI::ParseError& error) {
-    throw chiaro::usageError("command line", error.what(), "see chiaro-view --help");
-  }
+  if (!chiaro::readCommandLine(app, argc, argv)) return chiaro::ExitCode::done;
   texts.framesGiven = app.count("--frames") > 0;
   chiaro::finishViewOptions(options, texts);
   switch (options.mode) {

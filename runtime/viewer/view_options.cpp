@@ -110,7 +110,7 @@ void declareViewOptions(CLI::App& app, ViewOptions& options, ViewOptionTexts& te
 
   app.add_option("--animate", texts.animate, "none, or wetness: every material gets wet and dry again, in 4 seconds or 240 frames of a run that ends")
       ->type_name("NAME")->capture_default_str()->group(view);
-  app.add_option("--model", texts.model, "Reflectance model of every material: " + joined(reflectanceNames()))->type_name("NAME")->group(view);
+  app.add_option("--model", texts.model, "Reflectance model of every material: " + reflectanceNameList())->type_name("NAME")->group(view);
   app.add_flag("--energy-compensation", options.energyCompensation, "GGX gives back what scatters more than once between its facets")->group(view);
   app.add_option("--lobes", options.lobes, "1, 3, 5, 7 or 9 lobes strung for every material (GGX: three times as many); 0 is the best known")
       ->type_name("N")->capture_default_str()->group(view);
@@ -142,7 +142,7 @@ void finishViewOptions(ViewOptions& options, const ViewOptionTexts& texts) {
   options.shadows = !texts.noShadows;
   options.background = !texts.noBackground;
   options.materials = {texts.roughness, texts.metallic, modelFromOption(texts.model)};
-  requireLobes(options.lobes);
+  requireLobes(options.lobes, "--lobes");
   options.animation = materialAnimationFromName(texts.animate);
   for (const auto& text : texts.lights) options.lights.push_back(parseLightSpec(text));
   for (const auto& [value, option] : {std::pair{texts.roughness, "--roughness"}, std::pair{texts.metallic, "--metallic"}})

@@ -113,7 +113,9 @@ TEST(AreaLight, TheGaussianKeepsFluxAndMeanCosine) {
     const lobe64::LightCap cap = lobe64::sunCap(glm::dvec3(0, 0, 1), s);
     const double sharpness = lobe64::capSharpness(cap);
     EXPECT_NEAR(lobe64::oneMinusMeanCosine(sharpness) / (std::sin(0.5 * s) * std::sin(0.5 * s)), 1.0, 1e-6) << s;
-    if (s < 0.02) EXPECT_NEAR(sharpness * s * s, 4.0, 1e-3);
+    if (s < 0.02) {
+      EXPECT_NEAR(sharpness * s * s, 4.0, 1e-3);
+    }
   }
 }
 

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "precompute/random_directions.h"
 #include "precompute/report/visibility/ground.h"
 #include "precompute/report/visibility/haar.h"
 #include "precompute/report/visibility/haar_method.h"

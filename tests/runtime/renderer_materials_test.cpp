@@ -10,31 +10,12 @@
 #include "precompute/reference/reference.h"
 #include "runtime/render/renderer.h"
 #include "tests/lobe/gl_test_main.h"
+#include "tests/runtime/unoccluded.h"
 
 namespace chiaro {
 namespace {
 
 constexpr int kSize = 48;
-
-/// A sphere of one material as a bake leaves it where nothing is hidden.
-BakedScene sphereOf(const Material& material) {
-  BakedScene baked;
-  baked.scene = builtinScene("sphere");
-  baked.scene.materials = {material};
-  Transfer& t = baked.transfer;
-  t.resolution = 16;
-  t.directionCount = 32;
-  t.directionSharpness = 32.0f;
-  for (int i = 0; i < 32; ++i) {
-    const float z = 1.0f - (2.0f * static_cast<float>(i) + 1.0f) / 32.0f, s = std::sqrt(1.0f - z * z), phi = static_cast<float>(i) * 2.39996323f;
-    t.directions.emplace_back(s * std::cos(phi), s * std::sin(phi), z);
-  }
-  for (auto& primitive : baked.scene.primitives) {
-    primitive.material = 0;
-    t.primitives.push_back({{}, std::vector<std::uint8_t>(primitive.positions.size() * 32, 255), {}});
-  }
-  return baked;
-}
 
 Material metal(float roughness, Reflectance model = Reflectance::ggx) {
   Material m;
@@ -45,9 +26,7 @@ Material metal(float roughness, Reflectance model = Reflectance::ggx) {
 }
 
 RenderSettings settingsFor(bool compensated) {
-  RenderSettings settings;
-  settings.width = settings.height = kSize;
-  settings.background = false;
+  RenderSettings settings = smallPicture(kSize);
   settings.energyCompensation = compensated;
   return settings;
 }

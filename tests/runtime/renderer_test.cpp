@@ -8,28 +8,13 @@
 
 #include "assets/builtin/builtin_scene.h"
 #include "tests/lobe/gl_test_main.h"
+#include "tests/runtime/unoccluded.h"
 #ifdef CHIARO_WITH_REFERENCE
 #include "precompute/reference/reference.h"
 #endif
 
 namespace chiaro {
 namespace {
-
-/// What a bake of an unoccluded scene gives: no terms, everything visible.
-BakedScene unoccluded(Scene scene, std::uint8_t visibility = 255) {
-  BakedScene baked;
-  baked.scene = std::move(scene);
-  Transfer& t = baked.transfer;
-  t.resolution = 16;
-  t.directionCount = 32;
-  t.directionSharpness = 32.0f;
-  for (int i = 0; i < 32; ++i) {
-    const float z = 1.0f - (2.0f * static_cast<float>(i) + 1.0f) / 32.0f, s = std::sqrt(1.0f - z * z), phi = static_cast<float>(i) * 2.39996323f;
-    t.directions.emplace_back(s * std::cos(phi), s * std::sin(phi), z);
-  }
-  for (const auto& primitive : baked.scene.primitives) t.primitives.push_back({{}, std::vector<std::uint8_t>(primitive.positions.size() * 32, visibility), {}});
-  return baked;
-}
 
 Material material(float roughness, float metallic, glm::vec3 color, float anisotropy = 0.0f) {
   Material m;
@@ -38,20 +23,6 @@ Material material(float roughness, float metallic, glm::vec3 color, float anisot
   m.baseColorFactor = glm::vec4(color, 1.0f);
   m.anisotropyStrength = anisotropy;
   return m;
-}
-
-BakedScene sphereOf(const Material& m) {
-  Scene scene = builtinScene("sphere");
-  scene.materials = {m};
-  for (auto& primitive : scene.primitives) primitive.material = 0;
-  return unoccluded(std::move(scene));
-}
-
-RenderSettings smallPicture(int size) {
-  RenderSettings settings;
-  settings.width = settings.height = size;
-  settings.background = false;
-  return settings;
 }
 
 int covered(const ImageRgba& image) {

@@ -2,9 +2,9 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
-#include <iostream>
 
 #include "assets/file.h"
+#include "assets/program/command_line.h"
 #include "assets/program/interrupt.h"
 #include "assets/program/progress_bar.h"
 #include "precompute/report/brdf/brdf_options.h"
@@ -31,14 +31,7 @@ ExitCode brdfReport(int argc, const char* const* argv) {
   app.set_version_flag("--version", "chiaro-report " CHIARO_VERSION);
   BrdfOptions options;
   declareBrdfOptions(app, options);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::Success& asked) {  // --help, --version
-    app.exit(asked, std::cout, std::cerr);
-    return ExitCode::done;
-  } catch (const CLI::ParseError& error) {
-    throw usageError("command line", error.what(), "see chiaro-report brdf --help");
-  }
+  if (!readCommandLine(app, argc, argv)) return ExitCode::done;
   finishBrdfOptions(options);
   catchInterrupts();
   if (!options.warpChoice.empty()) {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "precompute/report/visibility/lobe.h"
+#include "precompute/random_directions.h"
 
 namespace chiaro {
 namespace {

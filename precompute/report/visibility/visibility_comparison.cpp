@@ -7,6 +7,7 @@
 
 #include "assets/error.h"
 #include "precompute/parallel.h"
+#include "precompute/random_directions.h"
 #include "precompute/report/visibility/haar_method.h"
 #include "precompute/report/visibility/map_methods.h"
 #include "precompute/report/visibility/sh_method.h"

@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <iostream>
 #include <stdexcept>
 
 #include "assets/builtin/builtin_scene.h"
 #include "assets/file.h"
+#include "assets/program/command_line.h"
 #include "assets/program/interrupt.h"
 #include "assets/program/progress_bar.h"
 #include "assets/scene/load_scene.h"
@@ -112,14 +112,7 @@ ExitCode visibilityReport(int argc, const char* const* argv) {
   app.set_version_flag("--version", "chiaro-report " CHIARO_VERSION);
   VisibilityOptions options;
   declareVisibilityOptions(app, options);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::Success& asked) {  // --help, --version
-    app.exit(asked, std::cout, std::cerr);
-    return ExitCode::done;
-  } catch (const CLI::ParseError& error) {
-    throw usageError("command line", error.what(), "see chiaro-report visibility --help");
-  }
+  if (!readCommandLine(app, argc, argv)) return ExitCode::done;
   finishVisibilityOptions(options);
   catchInterrupts();
 
