@@ -11,7 +11,10 @@ namespace chiaro {
 namespace {
 
 /// With so few points left filtering costs more than it saves.
-constexpr std::size_t kFew = 8;
+constexpr std::size_t kFew = 16;
+
+/// Lists of points are repeated up to a multiple of this: the widest vector.
+constexpr std::size_t kPadding = 16;
 
 /// The longest way between two texels that touch is this / resolution, a chord.
 constexpr float kLongestStep = 4.9f;
@@ -34,11 +37,11 @@ struct Topmost {
 };
 
 /// Keeps the points whose plane is above the topmost one at the centre of a square somewhere within `half` to each side of it; in their order.
-/// All aligned, with eight floats to spare; padded to eight.
+/// All aligned, with kPadding floats to spare; padded.
 Topmost keepAbove(Coordinates<const float> source, std::size_t pointCount, glm::vec3 squareCenter, float reach, float* values,
                   Coordinates<float> to) {
   Topmost result{};
-  runVectorised([&]<typename Vector>() CHIARO_INLINE {
+  runInWidest([&]<typename Vector>() CHIARO_INLINE {
     const auto [x, y, z] = source;
     const auto [toX, toY, toZ] = to;
     float* value = values;
@@ -54,32 +57,32 @@ Topmost keepAbove(Coordinates<const float> source, std::size_t pointCount, glm::
       index += static_cast<float>(kWidth<Vector>);
     }
     // Whatever the width: of those as high the first.
-    float best = most[0];
-    for (int lane = 1; lane < kWidth<Vector>; ++lane) best = most[lane] > best ? most[lane] : best;
+    const float best = -leastElement<Vector>(-most);
     alignas(64) float places[kWidth<Vector>];
     storeVector(places, at);
-    unsigned highest = trueElements<Vector>(most >= Vector{} + best);
+    unsigned highest = elementsAtLeast<Vector>(most, Vector{} + best);
     auto rival = static_cast<std::size_t>(places[__builtin_ctz(highest)]);
     while ((highest &= highest - 1) != 0) rival = std::min(rival, static_cast<std::size_t>(places[__builtin_ctz(highest)]));
     const float half = reach, rivalU = x[rival] - z[rival], rivalV = y[rival] - z[rival];
     // A hair more, so that no rounding drops one that is as near.
     const Vector top = Vector{} + (best - 1e-6f);
     std::size_t kept = 0;
-    for (std::size_t i = 0; i < count; i += 8) {
+    constexpr int kAtOnce = kPackedAtOnce<Vector>;
+    for (std::size_t i = 0; i < count; i += kAtOnce) {
       unsigned bits = 0;
-      for (int k = 0; k < 8; k += kWidth<Vector>) {
+      for (int k = 0; k < kAtOnce; k += kWidth<Vector>) {
         const Vector pz = loadVector<Vector>(z + i + k);
         const Vector u = loadVector<Vector>(x + i + k) - pz - rivalU, v = loadVector<Vector>(y + i + k) - pz - rivalV;
         const Vector rise = half * ((u < -u ? -u : u) + (v < -v ? -v : v));
-        bits |= trueElements<Vector>(loadVector<Vector>(value + i + k) + rise >= top) << k;
+        bits |= elementsAtLeast<Vector>(loadVector<Vector>(value + i + k) + rise, top) << k;
       }
-      if (count - i < 8) bits &= (1u << (count - i)) - 1u;
+      if (count - i < kAtOnce) bits &= (1u << (count - i)) - 1u;
       storePacked<Vector>(x + i, bits, toX + kept);
       storePacked<Vector>(y + i, bits, toY + kept);
       storePacked<Vector>(z + i, bits, toZ + kept);
       kept += static_cast<std::size_t>(__builtin_popcount(bits));
     }
-    for (std::size_t i = kept; i % 8 != 0; ++i) {
+    for (std::size_t i = kept; i % kPadding != 0; ++i) {
       toX[i] = toX[kept - 1];
       toY[i] = toY[kept - 1];
       toZ[i] = toZ[kept - 1];
@@ -97,80 +100,98 @@ struct LeafPlane {
   float precise = 0.0f;  ///< squared chord; nearer points are compared one by one
 };
 
-/// Squared chords from the texels of a leaf to the nearest of some points (padded to eight); scratch: three times as many floats, aligned.
-void nearestInLeaf(Coordinates<const float> points, std::size_t pointCount, const LeafPlane& of, float* scratch, float* chord2) {
-  runVectorised([&]<typename Vector>() CHIARO_INLINE {
+/// lowest[8 r + c] = the least of some planes at row r and column c of a leaf, by their values at its centre and their slopes. Goes row by row
+/// up and down from the centre; both at once in a vector of sixteen.
+template <typename Vector>
+[[gnu::always_inline]] inline void lowestPlanes(const float* middles, const float* alongU, const float* alongV, std::size_t count, float* lowest) {
+  constexpr int kSide = FaceTree::kSide, kRows = kSide / 2, kColumns = std::min(kWidth<Vector>, kSide), kWays = kWidth<Vector> > kSide ? 1 : 2;
+  Vector way = {};
+  for (int lane = 0; lane < kWidth<Vector>; ++lane) way[lane] = lane < kSide ? 1.0f : -1.0f;
+  for (int first = 0; first < kSide; first += kColumns) {
+    Vector column = {}, least[kWays][kRows];
+    for (int lane = 0; lane < kWidth<Vector>; ++lane) column[lane] = static_cast<float>(first + lane % kColumns) - 3.5f;
+    for (auto& ofWay : least)
+      for (auto& row : ofWay) row = Vector{} + 16.0f;
+    for (std::size_t i = 0; i < count; ++i) {
+      const Vector middle = middles[i] + alongU[i] * column;
+      const float step = alongV[i], half = 0.5f * step;
+#pragma GCC unroll 2
+      for (int w = 0; w < kWays; ++w) {
+        Vector value;
+        if constexpr (kWays == 1)
+          value = middle + half * way;
+        else
+          value = w == 0 ? middle + half : middle - half;
+#pragma GCC unroll 4
+        for (int r = 0; r < kRows; ++r) {
+          least[w][r] = value < least[w][r] ? value : least[w][r];
+          if constexpr (kWays == 1)
+            value += step * way;
+          else
+            value = w == 0 ? value + step : value - step;
+        }
+      }
+    }
+    for (int r = 0; r < kRows; ++r) {
+      float *up = lowest + kSide * (kRows + r) + first, *down = lowest + kSide * (kRows - 1 - r) + first;
+      std::memcpy(up, &least[0][r], kColumns * sizeof(float));
+      std::memcpy(down, reinterpret_cast<const char*>(&least[kWays - 1][r]) + (kWays == 1 ? kColumns * sizeof(float) : 0), kColumns * sizeof(float));
+    }
+  }
+}
+
+/// Squared chords from the texels of a leaf to the nearest of some points (padded), and the least of them; scratch: three times as many floats
+/// as padded points, aligned.
+float nearestInLeaf(Coordinates<const float> points, std::size_t pointCount, const LeafPlane& of, float* scratch, float* chord2) {
+  float nearest = 0.0f;
+  runInWidest([&]<typename Vector>() CHIARO_INLINE {
     const auto [x, y, z] = points;
-    const std::size_t count = pointCount, padded = (pointCount + 7) / 8 * 8;
+    const std::size_t count = pointCount, padded = (pointCount + kPadding - 1) / kPadding * kPadding;
     const LeafPlane leaf = of;
-    float *low = scratch, *alongU = scratch + padded, *alongV = scratch + 2 * padded, *result = chord2;
-    const auto row = [](std::size_t r) { return static_cast<std::size_t>(FaceTree::kSide) * r; };
+    float *middle = scratch, *alongU = scratch + padded, *alongV = scratch + 2 * padded, *result = chord2;
     // A plane relative to the reference: its value at the centre and its slopes.
     for (std::size_t i = 0; i < count; i += kWidth<Vector>) {
       const Vector dx = leaf.reference.x - loadVector<Vector>(x + i), dy = leaf.reference.y - loadVector<Vector>(y + i),
                    dz = leaf.reference.z - loadVector<Vector>(z + i);
-      storeVector(low + i, 0.5f * leaf.length * (dx * dx + dy * dy + dz * dz));
+      storeVector(middle + i, 0.5f * leaf.length * (dx * dx + dy * dy + dz * dz));
       storeVector(alongU + i, leaf.stepU * (dx - dz));
       storeVector(alongV + i, leaf.stepV * (dy - dz));
     }
-    for (int part = 0; part < FaceTree::kSide; part += kWidth<Vector>) {
-      Vector lane = {};
-      for (int l = 0; l < kWidth<Vector>; ++l) lane[l] = static_cast<float>(part + l) - 3.5f;
-      const Vector far = Vector{} + 16.0f;
-      Vector l0 = far, l1 = far, l2 = far, l3 = far, l4 = far, l5 = far, l6 = far, l7 = far;
-      for (std::size_t i = 0; i < count; ++i) {
-        const Vector middle = low[i] + alongU[i] * lane;
-        const float step = alongV[i];
-        Vector up = middle + 0.5f * step, down = middle - 0.5f * step;
-        l4 = up < l4 ? up : l4;
-        l3 = down < l3 ? down : l3;
-        up += step;
-        down -= step;
-        l5 = up < l5 ? up : l5;
-        l2 = down < l2 ? down : l2;
-        up += step;
-        down -= step;
-        l6 = up < l6 ? up : l6;
-        l1 = down < l1 ? down : l1;
-        up += step;
-        down -= step;
-        l7 = up < l7 ? up : l7;
-        l0 = down < l0 ? down : l0;
-      }
-      const auto finish = [&](std::size_t r, const Vector& least) CHIARO_INLINE {
-        const auto at = row(r) + static_cast<std::size_t>(part);
-        const Vector scale = loadVector<Vector>(leaf.scale + at);
-        Vector c = loadVector<Vector>(leaf.excess + at) + scale * least;
-        if (trueElements<Vector>(c < Vector{} + leaf.precise) != 0) {
-          // The sum cancels: by the definition.
-          const Vector u = leaf.center.x + leaf.stepU * lane, up = Vector{} + leaf.stepV * (static_cast<float>(r) - 3.5f),
-                       v = leaf.center.y + up, w = leaf.center.z - leaf.stepU * lane - up;
-          const Vector qx = 0.5f * scale * u, qy = 0.5f * scale * v, qz = 0.5f * scale * w;
-          c = far;
-          for (std::size_t i = 0; i < count; ++i) {
-            const Vector dx = qx - x[i], dy = qy - y[i], dz = qz - z[i];
-            const Vector d = dx * dx + dy * dy + dz * dz;
-            c = d < c ? d : c;
-          }
+    lowestPlanes<Vector>(middle, alongU, alongV, count, result);
+    Vector least = Vector{} + 16.0f;
+    for (std::size_t t = 0; t < FaceTree::kTexels; t += kWidth<Vector>) {
+      const Vector scale = loadVector<Vector>(leaf.scale + t);
+      Vector c = loadVector<Vector>(leaf.excess + t) + scale * loadVector<Vector>(result + t);
+      if (elementsAtLeast<Vector>(c, Vector{} + leaf.precise) != (1u << kWidth<Vector>) - 1u) {
+        // The sum cancels: by the definition.
+        Vector column = {}, row = {};
+        for (std::size_t lane = 0; lane < static_cast<std::size_t>(kWidth<Vector>); ++lane) {
+          column[lane] = static_cast<float>((t + lane) % FaceTree::kSide) - 3.5f;
+          row[lane] = static_cast<float>((t + lane) / FaceTree::kSide) - 3.5f;
         }
-        storeVector(result + at, c);
-      };
-      finish(0, l0);
-      finish(1, l1);
-      finish(2, l2);
-      finish(3, l3);
-      finish(4, l4);
-      finish(5, l5);
-      finish(6, l6);
-      finish(7, l7);
+        const Vector right = leaf.stepU * column, up = leaf.stepV * row;
+        const Vector qx = 0.5f * scale * (leaf.center.x + right), qy = 0.5f * scale * (leaf.center.y + up),
+                     qz = 0.5f * scale * (leaf.center.z - right - up);
+        Vector direct = Vector{} + 16.0f;
+        for (std::size_t i = 0; i < count; ++i) {
+          const Vector dx = qx - x[i], dy = qy - y[i], dz = qz - z[i];
+          const Vector d = dx * dx + dy * dy + dz * dz;
+          direct = d < direct ? d : direct;
+        }
+        c = c < leaf.precise ? direct : c;  // one by one, so that the width of vectors does not show
+      }
+      least = c < least ? c : least;
+      storeVector(result + t, c);
     }
+    nearest = leastElement<Vector>(least);
   });
+  return nearest;
 }
 
 /// angle[i] = 2 asin(chord / 2), at most `clamp`, negative where bit i % 8 of seen[i / 8] is 0, of a leaf's texels. The arcsine is its odd
 /// polynomial interpolated on chord^2 / 4 in [0, 1/2]; relative error 7e-8.
 void signedAngles(const float* chord2, const std::uint8_t* seenRows, float clamp, float* angles) {
-  runVectorised([&]<typename Vector>() CHIARO_INLINE {
+  runInWidest([&]<typename Vector>() CHIARO_INLINE {
     using Int = decltype(Vector{} < Vector{});
     const float* chords = chord2;
     const std::uint8_t* seen = seenRows;
@@ -189,7 +210,9 @@ void signedAngles(const float* chord2, const std::uint8_t* seenRows, float clamp
       takeSquareRoot<Vector>(c);
       Vector a = c * series;
       a = a < most ? a : most;
-      const Int hidden = ((Int{} + (seen[i / 8] >> i % 8)) & bit) == 0;
+      int rows = seen[i / 8] >> i % 8;
+      if constexpr (kWidth<Vector> > 8) rows |= seen[i / 8 + 1] << 8;
+      const Int hidden = ((Int{} + rows) & bit) == 0;
       storeVector(angle + i, __builtin_bit_cast(Vector, __builtin_bit_cast(Int, a) | (hidden & static_cast<int>(0x80000000u))));
     }
   });
@@ -197,7 +220,7 @@ void signedAngles(const float* chord2, const std::uint8_t* seenRows, float clamp
 
 /// Directions of one tile, those below the horizon of `normal` mirrored in it.
 void foldTile(const float* x, const float* y, const float* z, glm::vec3 normal, float* qx, float* qy, float* qz) {
-  runVectorised([&]<typename Vector>() CHIARO_INLINE {
+  runInWidest([&]<typename Vector>() CHIARO_INLINE {
     const glm::vec3 n = normal;
     for (int i = 0; i < 16; i += kWidth<Vector>) {
       const Vector wx = loadVector<Vector>(x + i), wy = loadVector<Vector>(y + i), wz = loadVector<Vector>(z + i);
@@ -210,10 +233,20 @@ void foldTile(const float* x, const float* y, const float* z, glm::vec3 normal, 
   });
 }
 
+/// Of a tile in a leaf; chord2: its first texel's.
+float leastInTile(const float* chord2) {
+  Float4 least = loadVector<Float4>(chord2);
+  for (int row = 1; row < 4; ++row) {
+    const Float4 c = loadVector<Float4>(chord2 + FaceTree::kSide * row);
+    least = c < least ? c : least;
+  }
+  return leastElement(least);
+}
+
 /// OctahedralGrid::texelAt of sixteen directions.
 void texelsAt(const OctahedralGrid& grid, const float* x, const float* y, const float* z, std::uint32_t* texels) {
   const int resolution = grid.resolution;
-  runVectorised([&]<typename Vector>() CHIARO_INLINE {
+  runInWidest([&]<typename Vector>() CHIARO_INLINE {
     using Int = decltype(Vector{} < Vector{});
     const float size = static_cast<float>(resolution);
     const int last = resolution - 1, tilesPerRow = resolution / 4;
@@ -273,7 +306,7 @@ void boundaryPoints(const OctahedralGrid& grid, const TexelBits& above, const Te
 
 void SsdfTransform::Points::reserve(std::size_t points) {
   if (points <= capacity) return;
-  capacity = (points + points / 2 + 31) / 16 * 16;
+  capacity = (points + points / 2) / kPadding * kPadding + kPadding;
   x = AlignedFloats(capacity);
   y = AlignedFloats(capacity);
   z = AlignedFloats(capacity);
@@ -308,14 +341,12 @@ bool SsdfTransform::sees(std::size_t texel, const Signal& signal) const {
   return texelBit(signal.visible.data(), texel);
 }
 
-unsigned SsdfTransform::seenInTile(std::size_t tile, const float* chord2, const Signal& signal) const {
+unsigned SsdfTransform::seenInTile(std::size_t tile, bool clear, const Signal& signal) const {
   unsigned seen = signal.visible[tile];
   const unsigned below = signal.doubleSided ? 0u : static_cast<std::uint16_t>(~signal.above[tile]);
   if (below == 0) return seen;
   const std::size_t first = 16 * tile;
-  float least = 16.0f;
-  for (int t = 0; t < 16; ++t) least = std::min(least, chord2[FaceTree::kSide * (t / 4) + t % 4]);
-  if (least > clear_ * clear_) {
+  if (clear) {
     const auto any = static_cast<std::size_t>(std::countr_one(below) % 16);  // one that is above, if there is
     return sees(first + any, signal) ? 0xffffu : 0u;
   }
@@ -343,10 +374,21 @@ void SsdfTransform::seenInLeaf(const FaceTree::Leaf& leaf, const float* chord2, 
     }
     return;
   }
-  for (int k = 0; k < 4; ++k) {
-    const int x = k % 2 * 4, y = k / 2 * 4;
+  bool clear[4];
+  unsigned bitsOf[4];
+  for (unsigned k = 0; k < 4; ++k) {
+    const int x = k % 2 * 4, y = static_cast<int>(k) / 2 * 4;
     const auto tile = static_cast<std::size_t>((leaf.row + y) / 4 * (storage_.resolution / 4) + (leaf.column + x) / 4);
-    const unsigned bits = seenInTile(tile, chord2 + FaceTree::kSide * y + x, signal);
+    const float* chords = chord2 + FaceTree::kSide * y + x;
+    clear[k] = leastInTile(chords) > clear_ * clear_;
+    // Two that touch see the same where both are clear.
+    unsigned& bits = bitsOf[k];
+    if (clear[k] && k % 2 != 0 && clear[k ^ 1u])
+      bits = bitsOf[k ^ 1u];
+    else if (clear[k] && k >= 2 && clear[k ^ 2u])
+      bits = bitsOf[k ^ 2u];
+    else
+      bits = seenInTile(tile, clear[k], signal);
     for (int r = 0; r < 4; ++r) seen[y + r] = static_cast<std::uint8_t>((x == 0 ? 0u : seen[y + r]) | (bits >> 4 * r & 15u) << x);
   }
 }
@@ -367,43 +409,46 @@ void SsdfTransform::visitLeaf(const FaceTree::Square& square, const OctahedralFa
                         .precise = precise * precise};
   alignas(64) float chord2[FaceTree::kTexels], angle[FaceTree::kTexels];
   std::uint8_t seen[FaceTree::kSide];
-  nearestInLeaf({points.x.data(), points.y.data(), points.z.data()}, points.count, plane, scratch_.data(), chord2);
+  const float nearest = nearestInLeaf({points.x.data(), points.y.data(), points.z.data()}, points.count, plane, scratch_.data(), chord2);
+  if (kind == Kind::mixed && square.whole && nearest > clear_ * clear_)
+    kind = sees(storage_.tiled[static_cast<std::size_t>(leaf.row * storage_.resolution + leaf.column)], signal) ? Kind::seen : Kind::hidden;
   if (kind == Kind::mixed)
     seenInLeaf(leaf, chord2, signal, seen);
   else
     std::fill_n(seen, FaceTree::kSide, static_cast<std::uint8_t>(kind == Kind::seen ? 0xff : 0));
   signedAngles(chord2, seen, clamp_, angle);
   for (int y = 0; y < FaceTree::kSide; ++y) {
+    const std::ptrdiff_t row = static_cast<std::ptrdiff_t>(leaf.row + y) * storage_.resolution + leaf.column;
+    if (square.whole) {
+      std::memcpy(signal.distances + row, angle + FaceTree::kSide * y, FaceTree::kSide * sizeof(float));
+      continue;
+    }
     const std::size_t from = leaf.from[static_cast<std::size_t>(y)], to = leaf.to[static_cast<std::size_t>(y)];
-    if (from == to) continue;
-    float* row = signal.distances + static_cast<std::ptrdiff_t>(leaf.row + y) * storage_.resolution + leaf.column;
-    const float* source = angle + FaceTree::kSide * y;
-    if (to - from == FaceTree::kSide)
-      std::memcpy(row, source, FaceTree::kSide * sizeof(float));
-    else
-      std::copy(source + from, source + to, row + from);
+    // A leaf may begin outside the map, where it has no texels.
+    if (from != to) std::copy_n(angle + FaceTree::kSide * y + from, to - from, signal.distances + row + static_cast<std::ptrdiff_t>(from));
   }
 }
 
 void SsdfTransform::visit(const FaceTree::Square& square, const OctahedralFace& face, const Points& from, std::size_t depth, Kind kind,
                           const Signal& signal) {
   const Points* points = &from;
-  if (from.count > kFew) {
+  if (from.count > kFew || (square.whole && kind == Kind::mixed && square.childCount != 0)) {
     auto& kept = kept_[depth];
-    kept.reserve(from.count + 16);
+    kept.reserve(from.count + kPadding);
     const auto top = keepAbove({from.x.data(), from.y.data(), from.z.data()}, from.count, square.center, square.half, scratch_.data(),
                                {kept.x.data(), kept.y.data(), kept.z.data()});
     kept.count = top.kept;
     points = &kept;
-    if (square.whole && kind == Kind::mixed) {
-      const float nearest = std::sqrt(std::max(2.0f - 2.0f * top.value / square.length - 1e-5f, 0.0f)), clear = square.radius + slack_;
-      const auto first = static_cast<std::size_t>(square.row * storage_.resolution + square.column);
+    if (square.whole) {
+      const float nearest2 = 2.0f - 2.0f * top.value / square.length - 1e-5f;
+      const auto isBeyond = [&](float chord) { return nearest2 > (square.radius + chord) * (square.radius + chord); };
       // What is below the horizon has to ask its mirror images, so that it pays to ask once for all of a square.
-      if (nearest > clear) kind = sees(storage_.tiled[first], signal) ? Kind::seen : Kind::hidden;
-      if (clampChord_ > slack_ && nearest > clampChord_ + square.radius) {
-        const float value = sees(storage_.tiled[first], signal) ? clamp_ : -clamp_;
+      if (kind == Kind::mixed && isBeyond(slack_))
+        kind = sees(storage_.tiled[static_cast<std::size_t>(square.row * storage_.resolution + square.column)], signal) ? Kind::seen : Kind::hidden;
+      if (kind != Kind::mixed && isBeyond(clampChord_)) {
+        float* first = signal.distances + static_cast<std::ptrdiff_t>(square.row) * storage_.resolution + square.column;
         for (int y = 0; y < square.side; ++y)
-          std::fill_n(signal.distances + first + static_cast<std::size_t>(y * storage_.resolution), square.side, value);
+          std::fill_n(first + static_cast<std::ptrdiff_t>(y) * storage_.resolution, square.side, kind == Kind::seen ? clamp_ : -clamp_);
         return;
       }
     }
@@ -429,20 +474,18 @@ void SsdfTransform::operator()(glm::vec3 normal, bool doubleSided, const TexelBi
   for (std::size_t i = 0; !doubleSided && i < count; ++i) boundary_.push_back(glm::normalize(boundary_[i] - 2.0f * glm::dot(boundary_[i], normal) * normal));
   all_.reserve(boundary_.size());
   if (scratchCapacity_ < 3 * all_.capacity) scratch_ = AlignedFloats(scratchCapacity_ = 3 * all_.capacity);
+  all_.count = boundary_.size();
+  boundary_.resize((boundary_.size() + kPadding - 1) / kPadding * kPadding, boundary_.back());
   for (std::size_t f = 0; f < tree_.faces.size(); ++f) {
-    for (std::size_t i = 0; i < boundary_.size(); ++i) {
-      const auto p = tree_.faces[f].toFrame(boundary_[i]);
-      all_.x[i] = p.x;
-      all_.y[i] = p.y;
-      all_.z[i] = p.z;
+    const OctahedralFace face = tree_.faces[f];
+    float *x = all_.x.data(), *y = all_.y.data(), *z = all_.z.data();
+    for (const auto& point : boundary_) {
+      const auto p = face.toFrame(point);
+      *x++ = p.x;
+      *y++ = p.y;
+      *z++ = p.z;
     }
-    all_.count = boundary_.size();
-    for (std::size_t i = all_.count; i % 8 != 0; ++i) {
-      all_.x[i] = all_.x[all_.count - 1];
-      all_.y[i] = all_.y[all_.count - 1];
-      all_.z[i] = all_.z[all_.count - 1];
-    }
-    visit(tree_.squares[f], tree_.faces[f], all_, 0, Kind::mixed, signal);
+    visit(tree_.squares[f], face, all_, 0, Kind::mixed, signal);
   }
 }
 

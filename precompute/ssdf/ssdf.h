@@ -43,7 +43,7 @@ class SsdfTransform {
  private:
   struct Points {
     AlignedFloats x, y, z;
-    std::size_t count = 0;  ///< the last one is repeated up to a multiple of eight
+    std::size_t count = 0;  ///< the last one is repeated, up to a multiple of sixteen
     std::size_t capacity = 0;
     void reserve(std::size_t points);
   };
@@ -53,8 +53,8 @@ class SsdfTransform {
              const Signal& signal);
   void visitLeaf(const FaceTree::Square& square, const OctahedralFace& face, const Points& points, Kind kind, const Signal& signal);
   bool sees(std::size_t texel, const Signal& signal) const;
-  /// chord2: of its first texel, in a leaf.
-  unsigned seenInTile(std::size_t tile, const float* chord2, const Signal& signal) const;
+  /// clear: none of its texels has a boundary point within clear_.
+  unsigned seenInTile(std::size_t tile, bool clear, const Signal& signal) const;
   /// A byte for each row.
   void seenInLeaf(const FaceTree::Leaf& leaf, const float* chord2, const Signal& signal, std::uint8_t* seen) const;
 

@@ -11,6 +11,8 @@
 #include <tuple>
 #include <utility>
 
+#include "precompute/simd.h"
+
 namespace chiaro {
 namespace {
 
@@ -82,6 +84,29 @@ TEST(Ssdf, EqualsBruteForceForAnyPattern) {
   const OctahedralGrid grid(32);
   for (std::size_t hidden = 0; hidden < grid.texelCount; hidden += 37)
     expectEqualsBruteForce(grid, signalOf(grid, {0, 1, 0}, true, [&](glm::vec3 w) { return grid.texelAt(w) != hidden; }));
+}
+
+TEST(Ssdf, IsTheSameInVectorsOfAnyWidth) {
+  const int widest = widestVector();
+  std::mt19937 random(11);
+  std::normal_distribution<float> gaussian;
+  std::vector<glm::vec4> caps;
+  for (int i = 0; i < 40; ++i) caps.emplace_back(glm::normalize(glm::vec3(gaussian(random), gaussian(random), gaussian(random))), 0.99f - 0.1f * static_cast<float>(i % 3));
+  const auto sees = [&](glm::vec3 w) {
+    return std::none_of(caps.begin(), caps.end(), [&](const glm::vec4& cap) { return glm::dot(w, glm::vec3(cap)) > cap.w; });
+  };
+  for (const int resolution : {20, 64, 128}) {
+    const OctahedralGrid grid(resolution);
+    for (const bool doubleSided : {false, true}) {
+      std::vector<std::vector<float>> maps;
+      for (int width = 4; width <= widest; width *= 2) {
+        widestVector() = width;
+        maps.push_back(signalOf(grid, {0.2f, -0.5f, 0.7f}, doubleSided, sees).ssdf);
+      }
+      widestVector() = widest;
+      for (const auto& map : maps) EXPECT_EQ(map, maps.front()) << resolution;
+    }
+  }
 }
 
 TEST(Ssdf, AtAnyResolutionAndClamp) {
