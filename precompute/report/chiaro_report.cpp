@@ -14,6 +14,7 @@
 #include "precompute/report/report_options.h"
 #include "precompute/report/report_page.h"
 #include "precompute/report/report_tables.h"
+#include "precompute/report/upsampling/upsampling_report.h"
 #include "precompute/report/visibility/visibility_report.h"
 #include "runtime/render/renderer.h"
 
@@ -31,6 +32,8 @@ constexpr const char* kExamples = R"(Examples:
       ways to store visibility against traced rays; has options of its own, see chiaro-report visibility --help
   chiaro-report brdf -o brdf
       reflectance models as spherical Gaussians; see chiaro-report brdf --help
+  chiaro-report upsampling baked.glb
+      upsampled frames against shading every pixel; see chiaro-report upsampling --help
 
 Exit codes: 0 done, 1 failed, 2 wrong usage, 3 unreadable input, 4 unwritable output, 5 under --fail-under, 130 interrupted.)";
 
@@ -119,6 +122,7 @@ ExitCode report(int argc, char** argv) {
 int main(int argc, char** argv) {
   return chiaro::runMain("chiaro-report", [&] {
     if (argc > 1 && std::string_view(argv[1]) == "visibility") return chiaro::visibilityReport(argc - 1, argv + 1);
+    if (argc > 1 && std::string_view(argv[1]) == "upsampling") return chiaro::upsamplingReport(argc - 1, argv + 1);
     if (argc > 1 && std::string_view(argv[1]) == "brdf") return chiaro::brdfReport(argc - 1, argv + 1);
     return report(argc, argv);
   });

@@ -24,17 +24,6 @@ std::optional<Number> numberFrom(std::string_view text) {
   return value;
 }
 
-glm::ivec2 sizeFrom(const std::string& text) {
-  const auto cross = text.find('x');
-  const auto width = numberFrom<int>(std::string_view(text).substr(0, cross));
-  const auto height = cross == std::string::npos ? std::nullopt : numberFrom<int>(std::string_view(text).substr(cross + 1));
-  if (!width || !height) throw usageError("--size", "\"" + text + "\" is not a size", "give WIDTHxHEIGHT such as 480x300");
-  if (*width < 1 || *height < 1 || *width > kLargestSide || *height > kLargestSide)
-    throw usageError("--size", "\"" + text + "\" is out of range",
-                     "each side must lie between 1 and " + std::to_string(kLargestSide));
-  return {*width, *height};
-}
-
 std::optional<float> exposureFrom(const std::string& text) {
   if (text == "auto") return std::nullopt;
   const auto value = numberFrom<float>(text);
@@ -74,6 +63,17 @@ void requireShare(float value, const char* option) {
 }
 
 }  // namespace
+
+glm::ivec2 sizeFrom(const std::string& text) {
+  const auto cross = text.find('x');
+  const auto width = numberFrom<int>(std::string_view(text).substr(0, cross));
+  const auto height = cross == std::string::npos ? std::nullopt : numberFrom<int>(std::string_view(text).substr(cross + 1));
+  if (!width || !height) throw usageError("--size", "\"" + text + "\" is not a size", "give WIDTHxHEIGHT such as 480x300");
+  if (*width < 1 || *height < 1 || *width > kLargestSide || *height > kLargestSide)
+    throw usageError("--size", "\"" + text + "\" is out of range",
+                     "each side must lie between 1 and " + std::to_string(kLargestSide));
+  return {*width, *height};
+}
 
 void declareReportOptions(CLI::App& app, ReportOptions& options, ReportOptionTexts& texts) {
   app.add_option("baked", texts.scene, "Baked scene (.glb) that chiaro-precompute wrote")->required()->type_name("FILE");

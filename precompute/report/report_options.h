@@ -56,6 +56,9 @@ struct ReportOptionTexts {
   bool noShadows = false;
 };
 
+/// "480x300". Throws Error (usage).
+glm::ivec2 sizeFrom(const std::string& text);
+
 /// Declares every option on `app`; the two structures must outlive its parse().
 void declareReportOptions(CLI::App& app, ReportOptions& options, ReportOptionTexts& texts);
 

@@ -50,6 +50,10 @@ void GpuScene::uploadGeometry(const Scene& scene) {
     GpuDraw draw;
     draw.firstIndex = static_cast<int>(indices.size());
     draw.indexCount = static_cast<int>(primitive.indices.size());
+    draw.mesh = primitive.mesh;
+    draw.firstVertex = vertices.size();
+    draw.vertexCount = primitive.positions.size();
+    meshCount_ = std::max(meshCount_, at(primitive.mesh) + 1);
     draw.material = primitive.material == kNone ? static_cast<int>(materials_.size()) - 1 : primitive.material;
     Bounds bounds;
     for (std::size_t v = 0; v < primitive.positions.size(); ++v) {

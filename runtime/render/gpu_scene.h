@@ -17,6 +17,8 @@ namespace chiaro {
 struct GpuDraw {
   int firstIndex = 0;
   int indexCount = 0;
+  int mesh = 0;           ///< into Scene::meshNames
+  std::size_t firstVertex = 0, vertexCount = 0;
   int material = 0;       ///< into the material buffer; the last one is the glTF default
   glm::vec3 center{0.0f};
 };
@@ -27,6 +29,7 @@ class GpuScene {
   explicit GpuScene(const BakedScene& baked);
 
   void setMaterials(const std::vector<Material>& materials);
+  std::size_t meshCount() const { return meshCount_; }
   /// Geometry, transfer and materials to their binding points.
   void bindBuffers() const;
   /// The textures of a material to units 0..4, and where the scene has such, of specular and coat to 17..20.
@@ -47,6 +50,7 @@ class GpuScene {
   void writeMaterials();
 
   std::vector<GpuDraw> draws_;
+  std::size_t meshCount_ = 0;
   std::vector<Material> materials_;  // the scene's, then the default
   std::vector<Light> lights_;
   Bounds bounds_;

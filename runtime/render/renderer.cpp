@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/gtc/matrix_transform.hpp>
 #include <optional>
 
 #include "assets/error.h"
@@ -12,46 +11,24 @@
 #include "runtime/gl/program.h"
 #include "runtime/gl/query.h"
 #include "runtime/render/frame_block.h"
+#include "runtime/render/frame_uniforms.h"
 #include "runtime/render/gpu_environment.h"
 #include "runtime/render/gpu_scene.h"
+#include "runtime/render/light_visibility.h"
 #include "runtime/render/reflectance_textures.h"
+#include "runtime/render/upsample_spec.h"
+#include "runtime/render/upsampler.h"
 
 namespace chiaro {
 namespace {
 
-constexpr unsigned kFlagShadows = 1, kFlagEnergyCompensation = 2;
-const std::vector<std::string> kPasses{"depth", "shade", "background", "blended", "resolve"};
+constexpr std::size_t kMostBodies = 255;  // 0 for what rests; shaders/stage/upsample_guide.glsl keeps eight bits
 
-glm::mat4 projectionOf(const Camera& camera, float aspect) {
-  if (camera.perspective) return glm::perspective(camera.verticalFov, aspect, camera.nearPlane, camera.farPlane);
-  const float up = camera.verticalExtent, right = up * aspect;
-  return glm::ortho(-right, right, -up, up, camera.nearPlane, camera.farPlane);
-}
+constexpr const char* kCoarsePass = "coarse shade";
 
-/// Numbers of shaders/stage/lamps.glsl.
-float typeNumber(LightType type) {
-  switch (type) {
-    case LightType::directional: return 0.0f;
-    case LightType::point:
-    case LightType::sphere: return 1.0f;
-    case LightType::spot: return 2.0f;
-    case LightType::disk: return 3.0f;
-  }
-  return 0.0f;
-}
-
-PunctualLightBlock blockOf(const Light& light) {
-  PunctualLightBlock block;
-  block.positionType = glm::vec4(light.position, typeNumber(light.type));
-  block.directionRange = glm::vec4(light.direction, std::isfinite(light.range) && light.range > 0 ? 1.0f / light.range : 0.0f);
-  const bool sized = light.type == LightType::sphere || light.type == LightType::disk;
-  const float size = light.type == LightType::directional ? light.angle : sized ? light.radius : 0.0f;
-  block.intensity = glm::vec4(light.color * light.intensity, size);
-  // KHR_lights_punctual: clamp(cos * scale + offset)^2 between the outer and the inner cone.
-  const float cosOuter = std::cos(light.outerConeAngle);
-  const float scale = 1.0f / std::max(std::cos(light.innerConeAngle) - cosOuter, 1e-3f);
-  block.cone = glm::vec4(scale, -cosOuter * scale, 0, 0);
-  return block;
+/// Debug views of what a surface is are not upsampled.
+bool upsamples(const RenderSettings& settings) {
+  return settings.upsample > 1 && (settings.debugView == DebugView::none || settings.debugView >= DebugView::totalWeight);
 }
 
 /// Colour and depth of one size.
@@ -80,6 +57,15 @@ std::vector<T> flipped(const std::vector<T>& rows, int width, int height) {
 }  // namespace
 
 struct Renderer::Impl {
+  /// Body 0 is what rests; every mesh that was ever moved is one of its own.
+  struct Body {
+    glm::mat4 worldFromRest{1.0f};
+    glm::mat4 clipFromRest{1.0f}, clipFromRestBefore{1.0f};
+    std::vector<const GpuDraw*> draws;
+    std::vector<VertexRange> vertices;
+    gl::Buffer frame{sizeof(FrameBlock)};
+  };
+
   GpuScene scene;
   std::vector<Light> lights;
   std::optional<GpuEnvironment> environment;
@@ -87,25 +73,27 @@ struct Renderer::Impl {
   gl::Texture specularTable, albedoTable, modelTable;
   std::optional<MaterialFeatures> built;  // what the programs and modelTable are for
   int builtLobes = 0;
+  bool builtUpsampler = false;
   gl::VertexArray noAttributes = gl::VertexArray::create();
-  gl::Buffer frameBuffer{sizeof(FrameBlock)};
-  gl::Program lightProgram;
-  gl::Buffer lightVisibility;
-  std::vector<glm::vec4> knownLights;  // axes and sharpness that lightVisibility holds
+  LightVisibility lightVisibility;
   std::unique_ptr<Target> shaded, resolved, displayed;
-  std::vector<gl::TimerQuery> timers;
+  std::vector<std::pair<std::string, gl::TimerQuery>> timers;  // of passes, in drawing order
   gl::TimerQuery totalTimer = gl::TimerQuery::create();
   RenderSettings last;
   bool drawn = false;
+  std::vector<Body> bodies = std::vector<Body>(1);
+  std::vector<std::size_t> bodyOfMesh;
+  std::unique_ptr<Upsampler> upsampler;  // made when first asked for
+  double secondsPerPixel = 0.0;          // of shading with upsampling, as last measured
 
-  explicit Impl(const BakedScene& baked) : scene(baked) {
+  explicit Impl(const BakedScene& baked) : scene(baked), lightVisibility(scene.transfer()), bodyOfMesh(scene.meshCount(), 0) {
+    assignDraws();
     setLights(baked.scene.lights);
-    build(0);
+    build({});
     backgroundProgram =
         gl::Program::load({{GL_VERTEX_SHADER, "shaders/stage/fullscreen.vert"}, {GL_FRAGMENT_SHADER, "shaders/stage/background.frag"}});
     resolveProgram = gl::Program::load({{GL_VERTEX_SHADER, "shaders/stage/fullscreen.vert"}, {GL_FRAGMENT_SHADER, "shaders/stage/resolve.frag"}});
     displayProgram = gl::Program::load({{GL_VERTEX_SHADER, "shaders/stage/fullscreen.vert"}, {GL_FRAGMENT_SHADER, "shaders/stage/display.frag"}});
-    if (scene.transfer().occludes()) lightProgram = gl::Program::loadCompute("shaders/stage/light_visibility.comp", scene.transfer().defines());
 
     const SpecularTable table = makeSpecularTable();
     specularTable = gl::Texture::make2dArray(GL_RGBA32F, table.roughnessCount, table.cosineCount, SpecularTable::kLobeCount);
@@ -113,18 +101,32 @@ struct Renderer::Impl {
     const AlbedoTable albedo = makeAlbedoTable();
     albedoTable = gl::Texture::make2d(GL_RGB32F, albedo.size, albedo.size);
     albedoTable.upload(0, GL_RGB, GL_FLOAT, albedo.entries.data());
-    for (std::size_t i = 0; i < kPasses.size(); ++i) timers.push_back(gl::TimerQuery::create());
   }
 
   /// The programs and tables that the scene's materials ask for; nothing where they are there.
-  void build(int lobes) {
+  void build(const RenderSettings& settings) {
     const MaterialFeatures& features = scene.features();
-    if (built == features && builtLobes == lobes) return;
-    modelTable = makeReflectanceTextures(features);
+    const bool same = built == features && builtLobes == settings.lobes;
+    if (same && (!upsamples(settings) || builtUpsampler)) return;
     auto defines = features.defines(kReflectanceLayers);
-    depthProgram = gl::Program::load({{GL_VERTEX_SHADER, "shaders/stage/mesh.vert"}, {GL_FRAGMENT_SHADER, "shaders/stage/depth.frag"}}, defines);
-    defines.push_back("LOBES " + std::to_string(lobes));
+    if (!same) buildForward(features, settings.lobes, defines);
+    builtUpsampler = upsamples(settings);
+    if (!builtUpsampler) return;
+    if (!upsampler) upsampler = std::make_unique<Upsampler>();
+    for (auto& define : shadingDefines(settings.lobes)) defines.push_back(std::move(define));
+    upsampler->build(defines);
+  }
+
+  std::vector<std::string> shadingDefines(int lobes) const {
+    std::vector<std::string> defines{"LOBES " + std::to_string(lobes)};
     for (auto& define : scene.transfer().defines()) defines.push_back(std::move(define));
+    return defines;
+  }
+
+  void buildForward(const MaterialFeatures& features, int lobes, std::vector<std::string> defines) {
+    modelTable = makeReflectanceTextures(features);
+    depthProgram = gl::Program::load({{GL_VERTEX_SHADER, "shaders/stage/mesh.vert"}, {GL_FRAGMENT_SHADER, "shaders/stage/depth.frag"}}, defines);
+    for (auto& define : shadingDefines(lobes)) defines.push_back(std::move(define));
     shadeProgram = gl::Program::load({{GL_VERTEX_SHADER, "shaders/stage/mesh.vert"}, {GL_FRAGMENT_SHADER, "shaders/stage/shade.frag"}}, defines);
     built = features;
     builtLobes = lobes;
@@ -146,41 +148,46 @@ struct Renderer::Impl {
     }
   }
 
-  FrameBlock frameBlock(const Camera& camera, const RenderSettings& settings) {
-    FrameBlock frame;
-    const float aspect = static_cast<float>(settings.width) / static_cast<float>(settings.height);
-    frame.clipFromWorld = projectionOf(camera, aspect) * glm::inverse(camera.worldFromCamera);
-    frame.worldFromClip = glm::inverse(frame.clipFromWorld);
-    frame.eye = camera.perspective ? glm::vec4(glm::vec3(camera.worldFromCamera[3]), 1.0f)
-                                   : glm::vec4(glm::normalize(glm::vec3(camera.worldFromCamera[2])), 0.0f);
-    environment->fill(frame, settings.worldFromEnvironment, scene.directions(), scene.directionSharpness());
-    frame.counts.y = static_cast<int>(lights.size());
-    frame.counts.z = static_cast<int>(settings.debugView);
-    frame.counts.w = static_cast<int>((settings.shadows ? kFlagShadows : 0u) | (settings.energyCompensation ? kFlagEnergyCompensation : 0u));
-    for (std::size_t l = 0; l < lights.size(); ++l) frame.punctualLights[l] = blockOf(lights[l]);
-    return frame;
+  void setPoses(const std::vector<glm::mat4>& poses) {
+    if (poses.size() != scene.meshCount())
+      throw Error(ExitCode::failed, "setPoses", std::to_string(poses.size()) + " poses for a scene with " + std::to_string(scene.meshCount()) + " meshes", "pass one per mesh");
+    for (std::size_t mesh = 0; mesh < poses.size(); ++mesh) {
+      if (bodyOfMesh[mesh] == 0 && poses[mesh] != glm::mat4(1.0f)) {
+        if (bodies.size() == kMostBodies)
+          throw Error(ExitCode::failed, "setPoses", "more than " + std::to_string(kMostBodies - 1) + " meshes move", "join meshes that move alike");
+        bodyOfMesh[mesh] = bodies.size();
+        bodies.emplace_back().clipFromRest = bodies.front().clipFromRest;
+        assignDraws();
+      }
+      if (bodyOfMesh[mesh] != 0) bodies[bodyOfMesh[mesh]].worldFromRest = poses[mesh];
+    }
   }
 
-  /// What each vertex sees of each SG light: the same for every pixel, and for every frame until a light turns.
-  void updateLightVisibility(const FrameBlock& frame) {
-    if (!scene.transfer().occludes() || frame.counts.x == 0) return;
-    std::vector<glm::vec4> wanted;
-    for (int l = 0; l < frame.counts.x; ++l) wanted.push_back(frame.sgLights[l].axisSharpness);
-    const std::size_t bytes = sizeof(std::uint32_t) * scene.transfer().vertexCount() * wanted.size();
-    if (!lightVisibility || lightVisibility.size() < bytes) {
-      lightVisibility = gl::Buffer(bytes);
-      knownLights.clear();
+  void assignDraws() {
+    for (auto& body : bodies) {
+      body.draws.clear();
+      body.vertices.clear();
     }
-    lightVisibility.bindBase(GL_SHADER_STORAGE_BUFFER, 5);
-    if (wanted == knownLights) return;
-    lightProgram.use();
-    const auto groups = (scene.transfer().vertexCount() + 63) / 64;
-    const std::size_t row = 32768;  // of work groups; a driver need not take more than 65535 in one dimension
-    lightProgram.set("rowGroups", static_cast<int>(row));
-    lightProgram.set("vertexCount", static_cast<unsigned>(scene.transfer().vertexCount()));
-    glDispatchCompute(static_cast<GLuint>(std::min(groups, row)), static_cast<GLuint>((groups + row - 1) / row), 1);
-    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
-    knownLights = std::move(wanted);
+    for (const auto& one : scene.draws()) {
+      Body& body = bodies[bodyOfMesh[static_cast<std::size_t>(one.mesh)]];
+      body.draws.push_back(&one);
+      body.vertices.push_back({one.firstVertex, one.vertexCount});
+    }
+  }
+
+  void bindBody(std::size_t body) const { bodies[body].frame.bindBase(GL_UNIFORM_BUFFER, 0); }
+
+  void prepareBodies(const Camera& camera, const RenderSettings& settings) {
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+      Body& body = bodies[b];
+      const FrameBlock block = frameBlock(camera, settings, *environment, scene, lights, body.worldFromRest);
+      body.clipFromRestBefore = body.clipFromRest;
+      body.clipFromRest = block.clipFromWorld;
+      body.frame.write(0, std::span<const FrameBlock>(&block, 1));
+      bindBody(b);
+      lightVisibility.update(b, block, body.vertices);
+    }
+    bindBody(0);
   }
 
   void draw(const gl::Program& program, const GpuDraw& one) const {
@@ -194,13 +201,20 @@ struct Renderer::Impl {
 
   bool blended(const GpuDraw& one) const { return scene.material(one.material).alphaMode == AlphaMode::blend; }
 
+  void drawOpaque(const gl::Program& program) const {
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+      bindBody(b);
+      for (const auto* one : bodies[b].draws)
+        if (!blended(*one)) draw(program, *one);
+    }
+  }
+
   void drawDepth() const {
     depthProgram.use();
     glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
     glDepthMask(GL_TRUE);
     glDepthFunc(GL_LESS);
-    for (const auto& one : scene.draws())
-      if (!blended(one)) draw(depthProgram, one);
+    drawOpaque(depthProgram);
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
     glDepthMask(GL_FALSE);
   }
@@ -208,24 +222,33 @@ struct Renderer::Impl {
   void drawShaded() const {
     shadeProgram.use();
     glDepthFunc(GL_EQUAL);
-    for (const auto& one : scene.draws())
-      if (!blended(one)) draw(shadeProgram, one);
+    drawOpaque(shadeProgram);
   }
 
   /// Blended surfaces over what is behind them, farthest primitive first.
   void drawBlended(const Camera& camera) const {
-    std::vector<const GpuDraw*> order;
-    for (const auto& one : scene.draws())
-      if (blended(one)) order.push_back(&one);
-    if (order.empty()) return;
+    struct Blended {
+      const GpuDraw* draw;
+      std::size_t body;
+      float distance;
+    };
+    std::vector<Blended> order;
     const glm::vec3 eye(camera.worldFromCamera[3]);
-    std::stable_sort(order.begin(), order.end(),
-                     [&](const GpuDraw* a, const GpuDraw* b) { return glm::distance(a->center, eye) > glm::distance(b->center, eye); });
+    for (const auto& one : scene.draws()) {
+      if (!blended(one)) continue;
+      const std::size_t body = bodyOfMesh[static_cast<std::size_t>(one.mesh)];
+      order.push_back({&one, body, glm::distance(glm::vec3(bodies[body].worldFromRest * glm::vec4(one.center, 1.0f)), eye)});
+    }
+    if (order.empty()) return;
+    std::stable_sort(order.begin(), order.end(), [](const Blended& a, const Blended& b) { return a.distance > b.distance; });
     shadeProgram.use();
     glDepthFunc(GL_LESS);
     glEnable(GL_BLEND);
     glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
-    for (const auto* one : order) draw(shadeProgram, *one);
+    for (const auto& one : order) {
+      bindBody(one.body);
+      draw(shadeProgram, *one.draw);
+    }
     glDisable(GL_BLEND);
   }
 
@@ -234,23 +257,84 @@ struct Renderer::Impl {
     glDrawArrays(GL_TRIANGLES, 0, 3);
   }
 
-  void timed(std::size_t pass, const auto& body) const {
-    timers[pass].begin();
+  /// Passes of another name than in the last frame are new ones.
+  void timed(std::size_t pass, const char* name, const auto& body) {
+    if (timers.size() <= pass) timers.resize(pass + 1);
+    if (timers[pass].first != name) timers[pass] = {name, gl::TimerQuery::create()};
+    timers[pass].second.begin();
     body();
-    timers[pass].end();
+    timers[pass].second.end();
+  }
+
+  void clear() const {
+    const float black[4] = {0, 0, 0, 0}, farthest = 1.0f;
+    glClearNamedFramebufferfv(shaded->framebuffer.id(), GL_COLOR, 0, black);
+    glClearNamedFramebufferfv(shaded->framebuffer.id(), GL_DEPTH, 0, &farthest);
+  }
+
+  static void dataPass() {
+    glDisable(GL_DEPTH_TEST);
+    glDisable(GL_CULL_FACE);
+  }
+
+  std::size_t renderInFull() {
+    if (upsampler) upsampler->forget();
+    timed(0, "depth", [&] { drawDepth(); });
+    timed(1, "shade", [&] { drawShaded(); });
+    return 2;
+  }
+
+  /// As many pixels as the user allows.
+  unsigned recomputeBudget(const RenderSettings& settings) {
+    const double pixels = static_cast<double>(shaded->color.width()) * shaded->color.height();
+    const double milliseconds = static_cast<double>(settings.recompute.milliseconds);
+    if (!(milliseconds > 0.0)) return static_cast<unsigned>(pixels * static_cast<double>(std::clamp(settings.recompute.share, 0.0f, 1.0f)));
+    if (!(secondsPerPixel > 0.0)) return 0;
+    return static_cast<unsigned>(std::min(pixels, 1e-3 * milliseconds / secondsPerPixel));
+  }
+
+  void measureShading() {
+    for (const auto& [name, timer] : timers)
+      if (name == kCoarsePass && timer.ready()) secondsPerPixel = timer.seconds() / upsampler->coarsePixels();
+  }
+
+  std::size_t renderUpsampled(const Camera& camera, const RenderSettings& settings) {
+    measureShading();
+    upsampler->begin(shaded->color, shaded->depth, camera, settings);
+    const auto bind = [this](int body) { bindBody(static_cast<std::size_t>(body)); };
+    const int count = static_cast<int>(bodies.size());
+    timed(0, "surfaces", [&] {
+      upsampler->bindSurfaces();
+      glDepthFunc(GL_LESS);
+      upsampler->surfaceProgram().use();
+      for (int b = 0; b < count; ++b) {
+        const Body& body = bodies[static_cast<std::size_t>(b)];
+        bind(b);
+        upsampler->setBody(b, body.clipFromRestBefore);
+        for (const auto* one : body.draws)
+          if (!blended(*one)) draw(upsampler->surfaceProgram(), *one);
+      }
+    });
+    glDepthMask(GL_FALSE);
+    dataPass();
+    timed(1, kCoarsePass, [&] { upsampler->shade(count, bind); });
+    timed(2, "upsample", [&] { upsampler->filter(); });
+    timed(3, "recompute", [&] { upsampler->recompute(count, bind, recomputeBudget(settings)); });
+    timed(4, "compose", [&] { upsampler->compose(); });
+    bindBody(0);
+    shaded->framebuffer.bind();
+    glEnable(GL_DEPTH_TEST);
+    return 5;
   }
 
   void render(const Camera& camera, const RenderSettings& settings) {
     if (!environment) throw Error(ExitCode::failed, "render", "no environment was set", "call setEnvironment first");
-    build(settings.lobes);
+    build(settings);
     resize(settings.width, settings.height, settings.supersample);
-    FrameBlock frame = frameBlock(camera, settings);
-    frameBuffer.write(0, std::span<const FrameBlock>(&frame, 1));
 
     totalTimer.begin();
-    frameBuffer.bindBase(GL_UNIFORM_BUFFER, 0);
     scene.bindBuffers();
-    updateLightVisibility(frame);
+    prepareBodies(camera, settings);
     environment->bindTextures();
     specularTable.bind(9);
     albedoTable.bind(10);
@@ -266,28 +350,26 @@ struct Renderer::Impl {
     glCullFace(GL_BACK);
     glFrontFace(GL_CCW);
     glDepthMask(GL_TRUE);
-    const float black[4] = {0, 0, 0, 0}, farthest = 1.0f;
-    glClearNamedFramebufferfv(shaded->framebuffer.id(), GL_COLOR, 0, black);
-    glClearNamedFramebufferfv(shaded->framebuffer.id(), GL_DEPTH, 0, &farthest);
+    clear();
 
-    timed(0, [&] { drawDepth(); });
-    timed(1, [&] { drawShaded(); });
-    timed(2, [&] {
+    std::size_t pass = upsamples(settings) ? renderUpsampled(camera, settings) : renderInFull();
+    timed(pass++, "background", [&] {
       if (!settings.background || settings.debugView != DebugView::none) return;
+      bindBody(0);
       glDisable(GL_CULL_FACE);
       glDepthFunc(GL_LEQUAL);
       fullscreen(backgroundProgram);
     });
-    timed(3, [&] { drawBlended(camera); });
-    glDisable(GL_DEPTH_TEST);
-    glDisable(GL_CULL_FACE);
-    timed(4, [&] {
+    timed(pass++, "blended", [&] { drawBlended(camera); });
+    dataPass();
+    timed(pass++, "resolve", [&] {
       resolved->framebuffer.bind();
       shaded->color.bind(0);
       resolveProgram.set("supersample", settings.supersample);
       fullscreen(resolveProgram);
     });
     totalTimer.end();
+    timers.resize(pass);
     last = settings;
     drawn = true;
   }
@@ -323,14 +405,20 @@ Renderer::~Renderer() = default;
 Renderer::Renderer(Renderer&&) noexcept = default;
 Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 
-void Renderer::setEnvironment(const SgEnvironment& environment) { impl_->environment.emplace(environment); }
+void Renderer::setEnvironment(const SgEnvironment& environment) {
+  impl_->environment.emplace(environment);
+  if (impl_->upsampler) impl_->upsampler->forget();
+}
 void Renderer::setLights(const std::vector<Light>& lights) { impl_->setLights(lights); }
 void Renderer::setMaterials(const std::vector<Material>& materials) { impl_->scene.setMaterials(materials); }
+
+void Renderer::setPoses(const std::vector<glm::mat4>& worldFromBaked) { impl_->setPoses(worldFromBaked); }
 
 void Renderer::render(const Camera& camera, const RenderSettings& settings) {
   if (settings.width < 1 || settings.height < 1 || settings.supersample < 1 || settings.supersample > 8)
     throw usageError("size", "a picture needs at least one pixel and 1 to 8 samples a side", "check width, height and supersample");
   requireLobes(settings.lobes, "lobes");
+  requireUpsample(settings.upsample, "upsample");
   impl_->render(camera, settings);
 }
 
@@ -360,16 +448,21 @@ Image8 Renderer::readDisplay() {
   return image;
 }
 
+std::pair<unsigned, unsigned> Renderer::recomputed() const {
+  impl_->requireFrame();
+  return upsamples(impl_->last) ? impl_->upsampler->recomputed() : std::pair<unsigned, unsigned>{0, 0};
+}
+
 FrameTimings Renderer::timings() {
   impl_->requireFrame();
   FrameTimings timings;
-  for (std::size_t i = 0; i < kPasses.size(); ++i) timings.passes.emplace_back(kPasses[i], 1e3 * impl_->timers[i].seconds());
+  for (const auto& [name, timer] : impl_->timers) timings.passes.emplace_back(name, 1e3 * timer.seconds());
   timings.passes.emplace_back("total", 1e3 * impl_->totalTimer.seconds());
   return timings;
 }
 
 std::size_t Renderer::gpuBytes() const {
-  std::size_t bytes = impl_->scene.bytes() + (impl_->environment ? impl_->environment->bytes() : 0);
+  std::size_t bytes = impl_->scene.bytes() + (impl_->environment ? impl_->environment->bytes() : 0) + (impl_->upsampler ? impl_->upsampler->bytes() : 0);
   for (const auto* target : {&impl_->shaded, &impl_->resolved, &impl_->displayed})
     if (*target) bytes += (*target)->bytes();
   return bytes;

@@ -8,29 +8,13 @@
 #include <utility>
 #include <vector>
 
-#include "assets/image/display.h"
 #include "assets/image/image.h"
 #include "assets/scene/scene.h"
 #include "assets/transfer/transfer.h"
 #include "runtime/environment/sg_environment.h"
+#include "runtime/render/render_settings.h"
 
 namespace chiaro {
-
-enum class DebugView { none, albedo, normal, roughness, visibility, ssdf };
-
-struct RenderSettings {
-  int width = 1280;
-  int height = 720;
-  int supersample = 1;                       ///< n^2 shaded points a pixel, box-filtered before the tone map, 1..8
-  glm::mat3 worldFromEnvironment{1.0f};      ///< a rotation, free to change each frame
-  float exposure = 1.0f;                     ///< factor on radiance before the tone map
-  ToneMap toneMap = ToneMap::neutral;
-  bool shadows = true;
-  bool energyCompensation = false;           ///< GGX gives back what scatters more than once between its facets
-  int lobes = 0;                             ///< 1, 3, 5, 7 or 9 (GGX three times as many): strings of so many for every material; 0: the best known
-  bool background = true;                    ///< show the environment behind the scene
-  DebugView debugView = DebugView::none;
-};
 
 struct FrameTimings {
   /// Pass name and GPU milliseconds (GL timer queries), in drawing order; the last is "total".
@@ -55,6 +39,10 @@ class Renderer {
   /// that a model or a coat comes in which no material had before costs a compilation, and a model its table.
   void setMaterials(const std::vector<Material>& materials);
 
+  /// Where each mesh of the scene (Scene::meshNames) stands: rotations and shifts from where it was baked, the identity at first. A moved mesh keeps
+  /// the transfer that it was baked with, in its own frame: what hid it there still does, and its shadow on others stays behind.
+  void setPoses(const std::vector<glm::mat4>& worldFromBaked);
+
   /// Renders one frame into the renderer's own targets.
   void render(const Camera& camera, const RenderSettings& settings);
   /// Copies the last frame, tone-mapped and sRGB-encoded, to the bound window framebuffer (0) of this size.
@@ -64,6 +52,8 @@ class Renderer {
   ImageRgba readRadiance();
   /// The last frame as the screen shows it.
   Image8 readDisplay();
+  /// Pixels that the last frame's filter failed, and how many of them were shaded; 0 without upsampling. Waits for the GPU.
+  std::pair<unsigned, unsigned> recomputed() const;
   /// Of the last frame; waits for the GPU.
   FrameTimings timings();
   /// Bytes of GPU memory held in textures and buffers.

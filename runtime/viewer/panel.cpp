@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "runtime/render/upsample_spec.h"
 #include "runtime/viewer/view_options.h"
 
 namespace chiaro {
@@ -84,6 +85,19 @@ void drawLamps(PanelState& state, PanelActions& actions) {
   actions.copyLights = ImGui::Button("Copy as --light");
 }
 
+void drawUpsampling(PanelState& state) {
+  ImGui::SliderInt("upsample", &state.upsample, 1, kLargestUpsample, "%d x");
+  state.upsample = std::clamp(state.upsample, 1, kLargestUpsample);
+  if (state.upsample == 1) return;
+  if (const auto picked = chooser("weights", upsampleWeightNames(), static_cast<std::size_t>(state.upsampleWeights)))
+    state.upsampleWeights = static_cast<UpsampleWeights>(*picked);
+  bool timed = state.recompute.milliseconds > 0.0f;
+  if (ImGui::Checkbox("recompute by time", &timed)) state.recompute = timed ? RecomputeBudget{0.0f, 1.0f} : RecomputeBudget{};
+  float percent = 100.0f * state.recompute.share;
+  if (timed) ImGui::SliderFloat("recompute", &state.recompute.milliseconds, 0.1f, 20.0f, "%.1f ms");
+  else if (ImGui::SliderFloat("recompute", &percent, 0.0f, 100.0f, "%.0f %% of pixels")) state.recompute.share = std::clamp(percent, 0.0f, 100.0f) / 100.0f;
+}
+
 void drawPicture(PanelState& state, PanelActions& actions) {
   if (!ImGui::CollapsingHeader("Picture", ImGuiTreeNodeFlags_DefaultOpen)) return;
   ImGui::Checkbox("automatic exposure", &state.autoExposure);
@@ -92,6 +106,7 @@ void drawPicture(PanelState& state, PanelActions& actions) {
   if (const auto picked = chooser("tone map", kToneMaps, static_cast<std::size_t>(state.toneMap))) state.toneMap = static_cast<ToneMap>(*picked);
   ImGui::SliderInt("supersample", &state.supersample, 1, 8, "%d x");
   state.supersample = std::clamp(state.supersample, 1, 8);
+  drawUpsampling(state);
   if (const auto picked = chooser("show", debugViewNames(), static_cast<std::size_t>(state.debugView)))
     state.debugView = static_cast<DebugView>(*picked);
   ImGui::InputText("file", state.pictureName.data(), state.pictureName.size());

@@ -40,6 +40,9 @@ struct PanelState {
   bool background = true;
   int supersample = 1;
   DebugView debugView = DebugView::none;
+  int upsample = 1;
+  UpsampleWeights upsampleWeights = UpsampleWeights::lobe;
+  RecomputeBudget recompute;
   bool continuous = false;                ///< draw all the time, to watch the frame time
   // scene
   std::vector<Material> materials;

@@ -11,6 +11,7 @@
 #include "assets/error.h"
 #include "assets/file.h"
 #include "assets/scene/light_spec.h"
+#include "runtime/render/upsample_spec.h"
 
 namespace chiaro {
 namespace {
@@ -105,6 +106,12 @@ void declareViewOptions(CLI::App& app, ViewOptions& options, ViewOptionTexts& te
   app.add_flag("--no-shadows", texts.noShadows, "Ignore the baked transfer")->group(view);
   app.add_option("--debug-view", texts.debugView, "Show " + joined(debugViewNames()) + " instead of the picture")
       ->type_name("NAME")->capture_default_str()->group(view);
+  app.add_option("--upsample", options.upsample, "Shade one point of N x N pixels, 1 to 4, and make the others of these and of the frames before")
+      ->type_name("N")->capture_default_str()->group(view);
+  app.add_option("--upsample-weights", texts.upsampleWeights, "What makes a sample fit a pixel: " + joined(upsampleWeightNames()))
+      ->type_name("NAME")->capture_default_str()->group(view);
+  app.add_option("--recompute-budget", texts.recompute, "Most pixels that are shaded because no sample fits them: a share such as 10%, or GPU time such as 2ms")
+      ->type_name("P%|Tms")->capture_default_str()->group(view);
   app.add_option("--roughness", texts.roughness, "Perceptual roughness of every material, 0 to 1")->type_name("R")->group(view);
   app.add_option("--metallic", texts.metallic, "Metalness of every material, 0 to 1")->type_name("M")->group(view);
 
@@ -139,6 +146,11 @@ void finishViewOptions(ViewOptions& options, const ViewOptionTexts& texts) {
   options.exposure = parseExposure(texts.exposure);
   options.toneMap = toneMapFromName(texts.toneMap);
   options.debugView = debugViewFromName(texts.debugView);
+  requireUpsample(options.upsample, "--upsample");
+  options.upsampleWeights = upsampleWeightsFromName(texts.upsampleWeights);
+  options.recompute = parseRecomputeBudget(texts.recompute);
+  if (options.debugView >= DebugView::totalWeight && options.upsample == 1)
+    throw usageError("--debug-view", texts.debugView + " needs upsampling", "add --upsample 4");
   options.shadows = !texts.noShadows;
   options.background = !texts.noBackground;
   options.materials = {texts.roughness, texts.metallic, modelFromOption(texts.model)};
@@ -168,7 +180,7 @@ glm::ivec2 parseSize(const std::string& text) {
 }
 
 const std::vector<std::string>& debugViewNames() {
-  static const std::vector<std::string> kNames{"none", "albedo", "normal", "roughness", "visibility", "ssdf"};
+  static const std::vector<std::string> kNames{"none", "albedo", "normal", "roughness", "visibility", "ssdf", "total-weight", "age", "recomputed"};
   return kNames;
 }
 

@@ -43,6 +43,9 @@ struct ViewOptions {
   bool energyCompensation = false;
   int lobes = 0;                          ///< RenderSettings::lobes
   DebugView debugView = DebugView::none;
+  int upsample = 1;
+  UpsampleWeights upsampleWeights = UpsampleWeights::lobe;
+  RecomputeBudget recompute;
   MaterialAnimation animation = MaterialAnimation::none;
   int frames = 1;
   int threads = 0;
@@ -59,6 +62,7 @@ struct ViewOptionTexts {
   std::string exposure = "auto";
   std::string toneMap = "neutral";
   std::string debugView = "none";
+  std::string upsampleWeights = "lobe", recompute = "10%";
   std::string picture;
   std::string timings;
   std::string scene;

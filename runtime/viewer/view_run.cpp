@@ -84,6 +84,9 @@ RenderSettings renderSettings(const ViewOptions& options, float autoExposure) {
   settings.energyCompensation = options.energyCompensation;
   settings.lobes = options.lobes;
   settings.debugView = options.debugView;
+  settings.upsample = options.upsample;
+  settings.upsampleWeights = options.upsampleWeights;
+  settings.recompute = options.recompute;
   return settings;
 }
 

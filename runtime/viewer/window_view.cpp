@@ -30,6 +30,7 @@ namespace {
 constexpr float kDegrees = std::numbers::pi_v<float> / 180.0f;
 constexpr float kKeyStep = 5.0f * kDegrees;
 constexpr double kRestSeconds = 0.2;                     // without a change, before a slow driver draws the whole picture
+constexpr int kSettlingFrames = 32;  // twice the points of the largest cell
 constexpr float kDragTurn = std::numbers::pi_v<float>;  // a drag over the window's height is half a turn
 
 std::string titleOf(const std::filesystem::path& path) { return path.filename().string() + " - Chiaro"; }
@@ -52,6 +53,9 @@ PanelState panelFor(const ViewOptions& options, const LoadedScene& loaded) {
   state.shadows = options.shadows;
   state.background = options.background;
   state.supersample = options.supersample;
+  state.upsample = options.upsample;
+  state.upsampleWeights = options.upsampleWeights;
+  state.recompute = options.recompute;
   state.debugView = options.debugView;
   state.environments = options.environments;
   for (const auto& name : builtinEnvironmentNames())
@@ -70,7 +74,8 @@ PanelState panelFor(const ViewOptions& options, const LoadedScene& loaded) {
 bool same(const RenderSettings& a, const RenderSettings& b) {
   return a.width == b.width && a.height == b.height && a.supersample == b.supersample && a.worldFromEnvironment == b.worldFromEnvironment &&
          a.exposure == b.exposure && a.toneMap == b.toneMap && a.shadows == b.shadows && a.background == b.background &&
-         a.debugView == b.debugView;
+         a.debugView == b.debugView && a.upsample == b.upsample && a.upsampleWeights == b.upsampleWeights &&
+         a.recompute.share == b.recompute.share && a.recompute.milliseconds == b.recompute.milliseconds;
 }
 
 bool same(const Camera& a, const Camera& b) {
@@ -199,11 +204,14 @@ class InteractiveView {
     settings.energyCompensation = options_.energyCompensation;
     settings.lobes = options_.lobes;
     settings.debugView = state_.debugView;
+    settings.upsample = state_.upsample;
+    settings.upsampleWeights = state_.upsampleWeights;
+    settings.recompute = state_.recompute;
     return settings;
   }
 
   /// Draws what has changed: coarsely while it goes on changing where the driver is slow, and whole when it rests. A picture
-  /// at rest costs nothing: what was drawn last is shown again.
+  /// at rest costs nothing: what was drawn last is shown again, once upsampling has shaded every pixel.
   void render(glm::ivec2 size) {
     const RenderSettings wanted = wantedSettings(size);
     if (options_.animation != MaterialAnimation::none) {
@@ -214,7 +222,10 @@ class InteractiveView {
     const bool whole = state_.continuous || saveWanted_;
     if (changed) changedAt_ = secondsNow();
     const bool rested = secondsNow() - changedAt_ > kRestSeconds;
-    if (!state_.continuous && !changed && !(coarse_ && (rested || whole))) return;
+    if (changed) settledFrames_ = 0;
+    const bool settling = wanted.upsample > 1 && settledFrames_ < kSettlingFrames;
+    if (!state_.continuous && !changed && !settling && !(coarse_ && (rested || whole))) return;
+    ++settledFrames_;
 
     const RenderSettings settings = changed && !whole ? previewSettings(wanted, millisecondsPerSample_) : wanted;
     renderer_->render(orbit_.camera(), settings);
@@ -349,6 +360,7 @@ class InteractiveView {
   Camera drawnFrom_;
   bool stale_ = true;         // materials, environment or scene are not those of the last frame
   bool coarse_ = false;       // the last frame was a preview
+  int settledFrames_ = 0;  // drawn since anything changed
   double changedAt_ = 0.0;
   const double startedAt_ = secondsNow();  // of an animation
   double millisecondsPerSample_ = std::numeric_limits<double>::infinity();

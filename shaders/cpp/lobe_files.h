@@ -16,4 +16,5 @@
 #include "shaders/lobe/specular.glsl"
 #include "shaders/lobe/reflectance.glsl"
 #include "shaders/lobe/elongated.glsl"
+#include "shaders/lobe/upsampling.glsl"
 #include "shaders/lobe/display.glsl"

@@ -81,9 +81,10 @@ vec3 lampsUnderLobe(Surface s, Transfer t, vec3 axis, float sharpness) {
 }
 
 // Diffuse light of all lamps, and their reflection but for what lampsUnderLobe() gives of it; `smoothShare` of the reflection comes from lobes, `gain`
-// is what scattering more than once adds to it.
-vec3 lampLight(Surface s, Transfer t, float smoothShare, vec3 gain) {
+// is what scattering more than once adds to it. diffusePart: what of the sum is diffuse.
+vec3 lampLight(Surface s, Transfer t, float smoothShare, vec3 gain, out vec3 diffusePart) {
   vec3 sum = vec3(0.0);
+  diffusePart = vec3(0.0);
   for (int l = 0; l < frame.counts.y; ++l) {
     Lamp lamp;
     if (!lampAt(l, s.position, lamp)) continue;
@@ -110,6 +111,7 @@ vec3 lampLight(Surface s, Transfer t, float smoothShare, vec3 gain) {
     vec3 diffuse = s.diffuse * (kOneOverPi * lamp.cap.irradiance * irradiance * diffuseShare);
     float direct = 1.0 - smoothShare * capThroughLobes(lamp.cap, narrowerAlpha(s));
     sum += lamp.color * visible * (diffuse + (s.f0 * base + s.f90 * grazing) * gain * (lamp.cap.flux * direct));
+    diffusePart += lamp.color * visible * diffuse;
   }
   return sum;
 }

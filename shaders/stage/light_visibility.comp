@@ -8,11 +8,13 @@ layout(local_size_x = 64) in;
 layout(std430, binding = 5) writeonly buffer LightVisibilityBuffer { uint lightVisibility[]; };  // per vertex and light: two halves
 
 uniform int rowGroups;
+uniform uint firstVertex;
 uniform uint vertexCount;
 
 void main() {
   uint vertex = (gl_WorkGroupID.y * uint(rowGroups) + gl_WorkGroupID.x) * 64u + gl_LocalInvocationID.x;
   if (vertex >= vertexCount) return;
+  vertex += firstVertex;
   Transfer t;
   t.slots = 0;
   addCorner(t, vertex, 1.0);

@@ -333,14 +333,22 @@ vec3 coatReflection(Surface s, Transfer t) {
   s.diffuse = vec3(0.0);
   float smoothShare;
   vec3 reflected = ggxReflection(s, t, albedoAt(s.roughness, dot(s.n, s.wo)), smoothShare);
-  return reflected + lampLight(s, t, smoothShare, vec3(1.0));
+  vec3 diffusePart;
+  return reflected + lampLight(s, t, smoothShare, vec3(1.0), diffusePart);
 }
 #endif
 
-vec3 shade(Surface s, Transfer t) {
+// Of an anisotropic surface the mean of both directions' (within .03 for strength up to .6).
+vec3 ggxAlbedo(Surface s) {
   float cosineOut = dot(s.n, s.wo);
-  // Of an anisotropic surface the mean of both directions' (within .03 for strength up to .6).
-  vec3 albedo = 0.5 * (albedoAt(sqrt(s.alphaT), cosineOut) + albedoAt(sqrt(s.alphaB), cosineOut));
+  return 0.5 * (albedoAt(sqrt(s.alphaT), cosineOut) + albedoAt(sqrt(s.alphaB), cosineOut));
+}
+
+float diffuseShareOf(Surface s, vec3 albedo) { return 1.0 - (largestOf(s.f0) * (1.0 - albedo.z) + s.f90 * albedo.z); }
+
+// diffusePart: what of the radiance is diffuse; the rest is reflected.
+vec3 shade(Surface s, Transfer t, out vec3 diffusePart) {
+  vec3 albedo = ggxAlbedo(s);
   vec3 gain = vec3(1.0);
   vec3 radiance;
   float smoothShare;
@@ -360,12 +368,40 @@ vec3 shade(Surface s, Transfer t) {
     if (energyCompensation()) gain += s.f0 * (1.0 / clamp(albedo.x + albedo.y, 1.0e-3, 1.0) - 1.0);
     radiance = ggxReflection(s, t, albedo, smoothShare) * gain;
   }
-  float diffuseShare = 1.0 - (largestOf(s.f0) * (1.0 - albedo.z) + s.f90 * albedo.z);
-  if (largestOf(s.diffuse) > 0.0) radiance += s.diffuse * (diffuseShare * kOneOverPi) * diffuseLight(s, t);
-  radiance += lampLight(s, t, smoothShare, gain);
+  float diffuseShare = diffuseShareOf(s, albedo);
+  diffusePart = vec3(0.0);
+  if (largestOf(s.diffuse) > 0.0) {
+    diffusePart = s.diffuse * (diffuseShare * kOneOverPi) * diffuseLight(s, t);
+    radiance += diffusePart;
+  }
+  vec3 lampDiffuse;
+  radiance += lampLight(s, t, smoothShare, gain, lampDiffuse);
+  diffusePart += lampDiffuse;
 #if CLEARCOAT
   float through = throughCoat(s);
   if (through < 1.0) radiance = through * radiance + (1.0 - through) * coatReflection(s, t);
+  diffusePart *= through;
 #endif
   return radiance;
+}
+
+vec3 shade(Surface s, Transfer t) {
+  vec3 diffusePart;
+  return shade(s, t, diffusePart);
+}
+
+// What light of one everywhere would make of the surface, diffuse and reflected: radiance divided by it hardly knows the material's colours.
+void surfaceAlbedo(Surface s, out vec3 diffuse, out vec3 reflected) {
+  vec3 albedo = ggxAlbedo(s);
+  diffuse = s.diffuse * max(diffuseShareOf(s, albedo), 0.0);
+#if REFLECTANCE_MODELS
+  if (kModelLayers[s.kind] >= 0) albedo.xy = modelAlbedo(s, modelOf(s.kind, s.alphaT, s.alphaB));
+#endif
+  reflected = s.f0 * albedo.x + s.f90 * albedo.y;
+#if CLEARCOAT
+  float through = throughCoat(s);
+  vec3 coat = albedoAt(s.coatRoughness, dot(shadingNormalTowards(s.ng, s.wo), s.wo));
+  diffuse *= through;
+  reflected = through * reflected + (1.0 - through) * (coat.x + coat.y);
+#endif
 }

@@ -1,0 +1,41 @@
+// What the upsampling filter compares: one texel of four words a pixel, a coarse sample or a pixel of the frame before.
+#include "shaders/lobe/octahedral.glsl"
+
+struct Guide {
+  float depth;      // window depth; 1: nothing there
+  vec3 normal;      // of the shaded surface; this and the axis in the environment's frame, so that they turn as the light does
+  vec3 axis;        // of the reflection lobe
+  float sharpness;  // its own
+  int body;         // what moves as one
+  int age;          // frames since what is kept here was shaded, at most kOldest
+};
+
+const float kLargestLogSharpness = 20.0;
+const int kOldest = 255;
+
+uint packedDirection(vec3 d) { return packUnorm2x16(octahedralEncode(d)); }
+vec3 unpackedDirection(uint word) { return octahedralDecode(unpackUnorm2x16(word)); }
+
+uvec4 packGuide(Guide g) {
+  uint sharpness = uint(clamp(log2(1.0 + g.sharpness) / kLargestLogSharpness, 0.0, 1.0) * 65535.0 + 0.5);
+  return uvec4(floatBitsToUint(g.depth), packedDirection(g.normal), packedDirection(g.axis), sharpness | uint(g.body & 255) << 16 | uint(g.age) << 24);
+}
+
+Guide unpackGuide(uvec4 words) {
+  Guide g;
+  g.depth = uintBitsToFloat(words.x);
+  g.normal = unpackedDirection(words.y);
+  g.axis = unpackedDirection(words.z);
+  g.sharpness = exp2(float(words.w & 0xffffu) * (kLargestLogSharpness / 65535.0)) - 1.0;
+  g.body = int(words.w >> 16 & 255u);
+  g.age = int(words.w >> 24);
+  return g;
+}
+
+const uvec4 kNoGuide = uvec4(0x3f800000u, 0u, 0u, 0u);  // depth 1
+
+// Frames before are found, and samples matched, within this share of the distance.
+const float kDepthTolerance = 0.01;
+
+// What a share of the distance is in window depth: x + y depth.
+float depthUnit(vec2 scale, float depth) { return kDepthTolerance * (scale.x + scale.y * depth); }
