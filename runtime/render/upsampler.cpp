@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace chiaro {
 namespace {
@@ -18,12 +19,12 @@ glm::ivec2 jitterOf(int cell, int frame) {
   return {2 * coarse[0] + fine[0], 2 * coarse[1] + fine[1]};
 }
 
-/// Of window depth that a share of the distance is: share (x + y depth).
-glm::vec2 depthScaleOf(const Camera& camera) {
-  const float near = camera.nearPlane, far = camera.farPlane;
+/// Of window depth that the height of a pixel is: x + y depth.
+glm::vec2 depthScaleOf(const Camera& camera, int height) {
+  const float near = camera.nearPlane, far = camera.farPlane, pixel = 2.0f / static_cast<float>(height);
   // Perspective: depth = infinite - infinite near / z, whose change with log z is infinite - depth.
-  if (camera.perspective) return {far / (far - near), -1.0f};
-  return {camera.verticalExtent / (far - near), 0.0f};
+  if (camera.perspective) return pixel * std::tan(0.5f * camera.verticalFov) * glm::vec2(far / (far - near), -1.0f);
+  return {pixel * camera.verticalExtent / (far - near), 0.0f};
 }
 
 void fullscreen(const gl::Program& program) {
@@ -90,7 +91,7 @@ void Upsampler::begin(const gl::Texture& color, const gl::Texture& depth, const 
   surfaces_ = gl::Framebuffer::make({&color, &place_, &colors_, &albedos_, &guide_, &before_}, &depth);
   composed_ = gl::Framebuffer::make({&color});
   depthScaleBefore_ = depthScale_;
-  depthScale_ = depthScaleOf(camera);
+  depthScale_ = depthScaleOf(camera, size_.y);
   jitter_ = jitterOf(cell_, frame_);
   now_ ^= 1;
   ++frame_;
@@ -159,7 +160,8 @@ void Upsampler::filter() {
   fullscreen(filterProgram_);
 }
 
-void Upsampler::recompute(int bodies, const std::function<void(int)>& bindBody, unsigned pixels) const {
+void Upsampler::recompute(int bodies, const std::function<void(int)>& bindBody, unsigned pixels) {
+  budget_ = pixels;
   if (pixels == 0 || !recomputes_) return;
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
   cutProgram_.set("budget", pixels);
@@ -217,7 +219,7 @@ void Upsampler::compose() {
 std::pair<unsigned, unsigned> Upsampler::recomputed() const {
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
   const auto words = urgencies_.read<std::uint32_t>();
-  return {words[67], words[64]};
+  return {words[67], std::min(words[64], budget_)};
 }
 
 std::size_t Upsampler::bytes() const {

@@ -38,7 +38,7 @@ class Upsampler {
   void shade(int bodies, const std::function<void(int)>& bindBody) const;
   void filter();
   /// `pixels`: the most that are shaded.
-  void recompute(int bodies, const std::function<void(int)>& bindBody, unsigned pixels) const;
+  void recompute(int bodies, const std::function<void(int)>& bindBody, unsigned pixels);
   /// Adds the light to `color`, or puts a debug view there. Ends the frame.
   void compose();
 
@@ -59,6 +59,7 @@ class Upsampler {
   glm::ivec2 size_{0}, coarse_{0};
   int cell_ = 0, frame_ = 0, now_ = 0;
   bool recomputes_ = false;
+  unsigned budget_ = 0;
   gl::Texture place_, colors_, albedos_, guide_, before_, quality_;
   gl::Texture coarseDiffuse_, coarseReflected_, coarseGuide_;
   Kept kept_[2];

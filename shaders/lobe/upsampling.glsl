@@ -3,6 +3,7 @@
 #ifndef CHIARO_CPP
 #include "shaders/lobe/warp.glsl"
 #include "shaders/lobe/ndf.glsl"
+#include "shaders/lobe/area_light.glsl"
 #endif
 
 // The SG of the clamped cosine: what diffuse light comes through, about the normal.
@@ -19,6 +20,22 @@ FN SphericalGaussian reflectionLobe(IN(int) kind, IN(Real) width, IN(Vec3) n, IN
 // Likeness of two lobes in [0, 1], whatever their sharpness.
 FN Real lobeWeight(IN(Vec3) axis1, IN(Real) sharpness1, IN(Vec3) axis2, IN(Real) sharpness2) {
   return sgNormalizedInnerProduct(sphericalGaussian(axis1, sharpness1, Real(1.0)), sphericalGaussian(axis2, sharpness2, Real(1.0)));
+}
+
+// -log of lobeWeight, which tells lobes apart long after that is 0: (sharpness / 4) |axis1 - axis2|^2 of two as sharp.
+FN Real lobeDistance(IN(Vec3) axis1, IN(Real) sharpness1, IN(Vec3) axis2, IN(Real) sharpness2) {
+  SphericalGaussian p = sgProductLog(axis1, sharpness1, axis2, sharpness2);
+  Real own = log(oneMinusExpOver(Real(4.0) * clampSharpness(sharpness1))) + log(oneMinusExpOver(Real(4.0) * clampSharpness(sharpness2)));
+  Real distance = Real(0.5) * own - log(oneMinusExpOver(Real(2.0) * p.sharpness)) - p.amplitude;
+  return distance > Real(0.0) ? distance : (isNotANumber(distance) ? distance : Real(0.0));
+}
+
+// For a choice among samples of which none may be alike: in (0, 1], falls with the square of the angle and never to 0. What lies between two
+// samples turns lobes by more than sharp ones are wide, so that all count as wide as that at least.
+CONST Real kTurnSharpness = Real(33.0);
+CONST Real kNearDistance = Real(0.05);
+FN Real lobeNearness(IN(Vec3) axis1, IN(Real) sharpness1, IN(Vec3) axis2, IN(Real) sharpness2) {
+  return kNearDistance / (kNearDistance + lobeDistance(axis1, blurredSharpness(sharpness1, kTurnSharpness), axis2, blurredSharpness(sharpness2, kTurnSharpness)));
 }
 
 // The same of two normals, which knows nothing of sharpness: exp(-|n1 - n2|^2 / (2 variance)).

@@ -30,11 +30,11 @@ uniform bool recompute;
 const float kLeastLike = 1.0e-4;
 const float kLeastShare = 1.0e-6;
 // A sample's worth for a pixel falls with their distance, in pixels: of what is right there 1, of what is interpolated the floor.
-const float kWorthDeviation = 0.6;
-const float kWorthFloor = 0.01;
+const float kWorthDeviation = 0.5;
+const float kWorthFloor = 0.005;
 const float kLargestWorth = 1.5;
-const float kFade = 0.95;          // of the frame before, a frame
-const float kChangeDeviation = 0.1;  // relative
+const float kFade = 0.98;          // of the frame before, a frame
+const float kChangeDeviation = 0.4;  // relative
 
 float seen(vec3 light) {
   float x = largestOf(light) * exposure;
@@ -60,28 +60,35 @@ void main() {
 
   vec3 diffuseSum = vec3(0.0), reflectedSum = vec3(0.0);
   vec3 normalSum = vec3(0.0), axisSum = vec3(0.0);
+  vec2 fits = vec2(0.0);
   vec2 total = vec2(0.0), divisor = vec2(0.0), change = vec2(0.0);
   float nearest = 1.0e6;
   vec3 low = vec3(1.0e30), high = vec3(0.0);
+  Guide others[4];
+  float same[4];
+  for (int i = 0; i < 4; ++i) {
+    ivec2 from = clamp(base + ivec2(i & 1, i >> 1), ivec2(0), coarse - 1);
+    others[i] = unpackGuide(texelFetch(coarseGuide, from, 0));
+    vec2 step = vec2(min(from * cell + jitter, size - 1) - at);
+    same[i] = others[i].depth < 1.0 && others[i].body == g.body ? planeWeight((others[i].depth - g.depth) / unit, a.slope, step) : 0.0;
+    if (same[i] > 0.5) nearest = min(nearest, dot(step, step));
+  }
   for (int i = 0; i < 4; ++i) {
     ivec2 offset = ivec2(i & 1, i >> 1);
     float tent = (offset.x == 1 ? f.x : 1.0 - f.x) * (offset.y == 1 ? f.y : 1.0 - f.y);
     ivec2 from = clamp(base + offset, ivec2(0), coarse - 1);
-    Guide other = unpackGuide(texelFetch(coarseGuide, from, 0));
+    Guide other = others[i];
     if (other.depth >= 1.0) continue;
     vec4 d = texelFetch(coarseDiffuse, from, 0);
     vec4 r = texelFetch(coarseReflected, from, 0);
     vec2 w = vec2(1.0), floorWeight = vec2(1.0);
     if (weights != kBilinearWeights) {
-      vec2 step = vec2(min(from * cell + jitter, size - 1) - at);
-      float off = (other.depth - g.depth) / unit - dot(a.slope, step);
-      float same = other.body == g.body ? depthWeight(off / (1.0 + 0.5 * (abs(a.slope.x) + abs(a.slope.y)))) : 0.0;
-      vec2 like = likeness(g, other);
-      w = same * like;
-      floorWeight = max(same, kLeastLike) * max(like, vec2(kLeastLike));
-      if (same > 0.5) nearest = min(nearest, dot(step, step));
+      w = same[i] * likeness(g, other);
+      vec2 near = nearness(g, other);
+      floorWeight = max(same[i], kLeastLike) * max(near, vec2(kLeastLike));
     }
     w *= tent;
+    fits += tent * same[i] * nearness(g, other);
     vec2 use = max(tent, kLeastShare) * floorWeight;
     total += w;
     divisor += use;
@@ -102,10 +109,10 @@ void main() {
     change /= divisor;
   }
 
-  History h = historyAt(g, before);
+  History h = historyAt(g, a.slope, before);
   vec2 steady = change / kChangeDeviation;
   vec2 kept = h.worth * kFade * exp(-steady * steady);
-  vec2 fresh = max(total, vec2(1.0e-4)) * max(exp(-0.5 * nearest / (kWorthDeviation * kWorthDeviation)), kWorthFloor);
+  vec2 fresh = max(weights == kLobeWeights ? fits : total, vec2(1.0e-4)) * max(exp(-0.5 * nearest / (kWorthDeviation * kWorthDeviation)), kWorthFloor);
   if (!(divisor.x > 0.0)) fresh = vec2(0.0);
   vec2 worth = kept + fresh;
   vec2 share = mix(vec2(0.0), kept / max(worth, vec2(1.0e-20)), greaterThan(worth, vec2(0.0)));

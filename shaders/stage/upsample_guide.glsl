@@ -1,5 +1,6 @@
 // What the upsampling filter compares: one texel of four words a pixel, a coarse sample or a pixel of the frame before.
 #include "shaders/lobe/octahedral.glsl"
+#include "shaders/lobe/upsampling.glsl"
 
 struct Guide {
   float depth;      // window depth; 1: nothing there
@@ -34,8 +35,14 @@ Guide unpackGuide(uvec4 words) {
 
 const uvec4 kNoGuide = uvec4(0x3f800000u, 0u, 0u, 0u);  // depth 1
 
-// Frames before are found, and samples matched, within this share of the distance.
-const float kDepthTolerance = 0.01;
+// In window depth, the distance that a pixel spans there: x + y depth. In this unit the slope of a surface is that of its picture.
+float depthUnit(vec2 scale, float depth) { return scale.x + scale.y * depth; }
 
-// What a share of the distance is in window depth: x + y depth.
-float depthUnit(vec2 scale, float depth) { return kDepthTolerance * (scale.x + scale.y * depth); }
+// Of a surface `across` pixels aside whose plane would have it at depth 0: in pixels. Steep surfaces are known less well, to a limit: at an outline
+// everything would be near.
+const float kDepthDeviation = 1.2;
+const float kSteepest = 8.0;
+float planeWeight(float depthOff, vec2 slope, vec2 across) {
+  float off = depthOff - dot(slope, across);
+  return depthWeight(off / (kDepthDeviation * (1.0 + 0.25 * min(abs(slope.x) + abs(slope.y), kSteepest))));
+}

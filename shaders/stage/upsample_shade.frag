@@ -75,7 +75,7 @@ void main() {
   imageStore(guideImage, at, words);
   imageStore(qualityImage, at, vec4(imageLoad(qualityImage, at).x, 0.0, 1.0, 0.0));
 #else
-  History h = historyAt(g, texelFetch(beforeTexture, at, 0).xyz);
+  History h = historyAt(g, a.slope, texelFetch(beforeTexture, at, 0).xyz);
   // What was only interpolated then may be wrong without any change in the light.
   vec2 proof = min(2.0 * h.worth, vec2(1.0));
   proof *= proof;

@@ -20,8 +20,7 @@ namespace {
 
 float radians(double degrees) { return static_cast<float>(degrees * std::numbers::pi / 180.0); }
 
-void setMaterial(Scene& scene, const StudyMaterial& material) {
-  nameDefaultMaterial(scene);
+std::vector<Material> materialsOf(Scene scene, const StudyMaterial& material) {
   overrideMaterials(scene, {.roughness = 0.5f, .metallic = 1.0f, .model = material.model});
   for (auto& m : scene.materials) {
     m.anisotropyStrength = 0.0f;
@@ -29,6 +28,7 @@ void setMaterial(Scene& scene, const StudyMaterial& material) {
     m.clearcoatFactor = 0.0f;
     m.reflectanceWidth = glm::vec2(material.parameter);
   }
+  return scene.materials;
 }
 
 /// Camera and poses of a frame; negative ones come before those that count.
@@ -180,17 +180,18 @@ std::vector<MaterialResult> studyUpsampling(const BakedScene& baked, const Upsam
                                            {"bilinear", UpsampleWeights::bilinear, 0.0f},
                                            {"lobe_recomputed", UpsampleWeights::lobe, study.recompute},
                                            {"normal_recomputed", UpsampleWeights::normal, study.recompute}};
+  BakedScene named = baked;
+  nameDefaultMaterial(named.scene);
+  const Path path(named.scene, study);
+  Renderer renderer(named);
+  renderer.setEnvironment(light);
+  RenderSettings settings;
+  settings.width = study.size.x;
+  settings.height = study.size.y;
+  settings.exposure = autoExposure(environment);
   std::vector<MaterialResult> results;
   for (const auto& material : study.materials) {
-    BakedScene changed = baked;
-    setMaterial(changed.scene, material);
-    Renderer renderer(changed);
-    renderer.setEnvironment(light);
-    RenderSettings settings;
-    settings.width = study.size.x;
-    settings.height = study.size.y;
-    settings.exposure = autoExposure(environment);
-    const Path path(changed.scene, study);
+    renderer.setMaterials(materialsOf(named.scene, material));
     const auto report = [&](const std::string& stage) {
       return [&progress, name = material.name() + ": " + stage](double done) { progress(name, done); };
     };
@@ -212,7 +213,7 @@ std::vector<MaterialResult> studyUpsampling(const BakedScene& baked, const Upsam
       upsampled.upsample = study.upsample;
       upsampled.upsampleWeights = variant.weights;
       upsampled.recompute = {.share = variant.recompute, .milliseconds = 0.0f};
-      renderer.render(path.camera(0), settings);  // a full frame in between: no history is left
+      renderer.setEnvironment(light);  // no history is left
       const Frames test = draw(renderer, path, upsampled, study, report(variant.name));
       show(variant.name, upsampled);
       result.variants.push_back(compare(test, full, variant, study));

@@ -1,0 +1,235 @@
+// Upsampled frames: what they may never show, whatever moved between them. How near they come to shading every pixel is measured, not tested
+// (docs/accuracy.md), but for one bound that no mistake would meet.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "assets/scene/camera_spec.h"
+#include "runtime/render/renderer.h"
+#include "tests/lobe/gl_test_main.h"
+#include "tests/runtime/unoccluded.h"
+
+namespace chiaro {
+namespace {
+
+constexpr int kSize = 64;
+
+Material metal(float roughness) {
+  Material m;
+  m.roughnessFactor = roughness;
+  m.metallicFactor = 1.0f;
+  return m;
+}
+
+Material matte() {
+  Material m;
+  m.roughnessFactor = 1.0f;
+  m.metallicFactor = 0.0f;
+  return m;
+}
+
+/// Shines along -Z, onto what faces +Z.
+Light headlight(float intensity = 3.0f) {
+  Light light;
+  light.intensity = intensity;
+  return light;
+}
+
+RenderSettings upsampled(int cell, UpsampleWeights weights = UpsampleWeights::lobe, float recompute = 0.0f) {
+  RenderSettings settings = smallPicture(kSize);
+  settings.upsample = cell;
+  settings.upsampleWeights = weights;
+  settings.recompute = {.share = recompute, .milliseconds = 0.0f};
+  return settings;
+}
+
+/// From a circle about the origin, `degrees` from +Z.
+Camera around(const BakedScene& baked, float degrees) {
+  const float a = degrees * 0.01745329252f;
+  return lookAt({4.0f * std::sin(a), 0.5f, 4.0f * std::cos(a)}, {0, 0, 0}, 0.7f, boundsOf(baked.scene));
+}
+
+ImageRgba frame(Renderer& renderer, const Camera& camera, const RenderSettings& settings) {
+  renderer.render(camera, settings);
+  return renderer.readRadiance();
+}
+
+float largest(const ImageRgba& image) {
+  float most = 0.0f;
+  for (const auto& texel : image.texels)
+    for (int c = 0; c < 3; ++c) most = texel[c] <= most ? most : texel[c];  // NaN becomes the most
+  return most;
+}
+
+double rmse(const ImageRgba& a, const ImageRgba& b) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < a.texels.size(); ++i) {
+    const glm::dvec3 difference(a.texels[i] - b.texels[i]);
+    sum += glm::dot(difference, difference) / 3.0;
+  }
+  return std::sqrt(sum / static_cast<double>(a.texels.size()));
+}
+
+SgEnvironment environment(const char* name) { return prepareEnvironment(loadEnvironment(name)); }
+
+TEST(Upsampler, WithoutUpsamplingNothingOfItShows) {
+  const BakedScene baked = sphereOf(metal(0.3f));
+  Renderer renderer(baked);
+  renderer.setEnvironment(environment("sunny"));
+  const ImageRgba before = frame(renderer, around(baked, 20), smallPicture(kSize));
+  for (int f = 0; f < 3; ++f) renderer.render(around(baked, static_cast<float>(f)), upsampled(4));
+  EXPECT_EQ(frame(renderer, around(baked, 20), smallPicture(kSize)).texels, before.texels);
+}
+
+// Whatever the sharpness of lobes, and where the sharpest and the broadest meet in one cell.
+TEST(Upsampler, StaysFiniteAtTheExtremes) {
+  const SgEnvironment sunny = environment("sunny");
+  std::vector<BakedScene> scenes{sphereOf(metal(0.0f)), sphereOf(metal(1.0f))};
+  Material exponent = metal(0.5f);
+  exponent.reflectance = Reflectance::blinnPhong;
+  exponent.reflectanceWidth = glm::vec2(1e6f);
+  scenes.push_back(sphereOf(exponent));
+  Scene both = builtinScene("ornament");
+  for (std::size_t m = 0; m < both.materials.size(); ++m) both.materials[m] = m % 2 == 0 ? exponent : matte();
+  scenes.push_back(unoccluded(std::move(both)));
+  for (const auto& baked : scenes) {
+    Renderer renderer(baked);
+    renderer.setEnvironment(sunny);
+    const Camera camera = defaultCamera(baked.scene, 1);
+    for (const int cell : {2, 3, 4}) {
+      for (const auto weights : {UpsampleWeights::lobe, UpsampleWeights::normal, UpsampleWeights::bilinear}) {
+        for (int f = 0; f < 3; ++f) {
+          const ImageRgba image = frame(renderer, orbited(camera, {0, 0, 0}, 0.02f * static_cast<float>(f), 0.0f), upsampled(cell, weights, 0.05f));
+          for (const auto& texel : image.texels)
+            for (int c = 0; c < 3; ++c) ASSERT_TRUE(texel[c] >= 0.0f && texel[c] <= 1e6f) << texel[c] << " with cells of " << cell;
+        }
+      }
+    }
+  }
+}
+
+TEST(Upsampler, ABudgetOfEveryPixelShadesWhatTheFilterFailed) {
+  const BakedScene baked = sphereOf(metal(0.3f));
+  Renderer renderer(baked);
+  renderer.setEnvironment(environment("sunny"));
+  const Camera camera = around(baked, 10);
+  const ImageRgba full = frame(renderer, camera, smallPicture(kSize));
+  const ImageRgba alone = frame(renderer, camera, upsampled(4));
+  EXPECT_EQ(renderer.recomputed().second, 0u);
+  renderer.setEnvironment(environment("sunny"));  // without history again
+  const ImageRgba helped = frame(renderer, camera, upsampled(4, UpsampleWeights::lobe, 1.0f));
+  const auto [wanted, shaded] = renderer.recomputed();
+  EXPECT_GT(wanted, 0u);
+  EXPECT_EQ(shaded, wanted);
+  // A tenth of the error at most; what is left are pixels whose samples all look alike.
+  EXPECT_LE(rmse(helped, full), 0.1 * rmse(alone, full));
+}
+
+TEST(Upsampler, TheBudgetHolds) {
+  const BakedScene baked = sphereOf(metal(0.1f));
+  Renderer renderer(baked);
+  renderer.setEnvironment(environment("windows"));
+  for (const float share : {0.0f, 0.01f, 0.1f}) {
+    renderer.render(around(baked, 100.0f * share), upsampled(4, UpsampleWeights::lobe, share));
+    EXPECT_LE(renderer.recomputed().second, static_cast<unsigned>(share * kSize * kSize)) << share;
+  }
+}
+
+TEST(Upsampler, BothWeightsBeatBilinearOnesOfAMovingView) {
+  const BakedScene baked = sphereOf(metal(0.2f));
+  Renderer full(baked), test(baked);
+  const SgEnvironment windows = environment("windows");
+  full.setEnvironment(windows);
+  test.setEnvironment(windows);
+  double error[3] = {};
+  for (const auto weights : {UpsampleWeights::lobe, UpsampleWeights::normal, UpsampleWeights::bilinear})
+    for (int f = 0; f < 8; ++f) {
+      const Camera camera = around(baked, 0.5f * static_cast<float>(f));
+      const ImageRgba image = frame(test, camera, upsampled(4, weights));
+      if (f >= 4) error[static_cast<int>(weights)] += rmse(image, frame(full, camera, smallPicture(kSize)));
+    }
+  EXPECT_LT(error[0], error[2]);
+  EXPECT_LT(error[1], error[2]);
+}
+
+TEST(Upsampler, ALightThatIsSwitchedOffIsGoneInThreeFrames) {
+  const BakedScene baked = sphereOf(matte());
+  Renderer renderer(baked);
+  renderer.setEnvironment(environment("overcast"));
+  const Camera camera = around(baked, 0);
+  const ImageRgba dark = frame(renderer, camera, smallPicture(kSize));
+  renderer.setLights({headlight(20.0f)});
+  ImageRgba image;
+  for (int f = 0; f < 20; ++f) image = frame(renderer, camera, upsampled(4));
+  const double lit = rmse(image, dark);
+  const ImageRgba alone = [&] {
+    Renderer fresh(baked);
+    fresh.setEnvironment(environment("overcast"));
+    return frame(fresh, camera, upsampled(4));
+  }();
+  renderer.setLights({});
+  for (int f = 0; f < 3; ++f) image = frame(renderer, camera, upsampled(4));
+  ASSERT_GT(lit, 1.0);
+  // What a frame without any history is off by, and a hundredth of the light.
+  EXPECT_LE(rmse(image, dark), rmse(alone, dark) + 0.01 * lit);
+}
+
+// Black where there is no light now, whatever there was before.
+TEST(Upsampler, NothingIsLeftAfterACutAResizeOrAnotherEnvironment) {
+  const BakedScene baked = sphereOf(matte());
+  Renderer renderer(baked);
+  const SgEnvironment black = environment("black"), white = environment("white");
+  renderer.setEnvironment(black);
+  renderer.setLights({headlight(20.0f)});
+  const auto warmUp = [&](float degrees) {
+    ImageRgba image;
+    for (int f = 0; f < 6; ++f) image = frame(renderer, around(baked, degrees), upsampled(4));
+    return largest(image);
+  };
+  for (const auto weights : {UpsampleWeights::lobe, UpsampleWeights::normal}) {
+    ASSERT_GT(warmUp(0), 1.0f);
+    const float seen = largest(frame(renderer, around(baked, 180), upsampled(4, weights)));
+    const float truth = largest(frame(renderer, around(baked, 180), smallPicture(kSize)));
+    EXPECT_LE(seen, truth + 0.01f) << "cut to the side in the dark";
+  }
+  ASSERT_GT(warmUp(0), 1.0f);
+  renderer.setLights({});
+  RenderSettings larger = upsampled(4);
+  larger.width = kSize + 13;
+  EXPECT_EQ(largest(frame(renderer, around(baked, 0), larger)), 0.0f) << "resized";
+  renderer.setEnvironment(white);
+  ASSERT_GT(warmUp(0), 0.5f);
+  renderer.setEnvironment(black);
+  EXPECT_EQ(largest(frame(renderer, around(baked, 0), upsampled(4))), 0.0f) << "another environment";
+}
+
+TEST(Upsampler, AMovedMeshIsFollowed) {
+  const BakedScene baked = sphereOf(metal(0.2f));
+  Renderer full(baked), test(baked);
+  const SgEnvironment windows = environment("windows");
+  full.setEnvironment(windows);
+  test.setEnvironment(windows);
+  const Camera camera = around(baked, 0);
+  double moved = 0.0, still = 0.0;
+  for (int f = 0; f < 12; ++f) {
+    glm::mat4 pose(1.0f);
+    pose[3][0] = 0.01f * static_cast<float>(f);
+    const std::vector<glm::mat4> poses(baked.scene.meshNames.size(), pose);
+    full.setPoses(poses);
+    test.setPoses(poses);
+    const ImageRgba image = frame(test, camera, upsampled(2));
+    if (f >= 6) moved += rmse(image, frame(full, camera, smallPicture(kSize)));
+  }
+  Renderer resting(baked);
+  resting.setEnvironment(windows);
+  for (int f = 0; f < 12; ++f) {
+    resting.setEnvironment(windows);  // no history
+    const ImageRgba image = frame(resting, camera, upsampled(2));
+    full.setPoses(std::vector<glm::mat4>(baked.scene.meshNames.size(), glm::mat4(1.0f)));
+    if (f >= 6) still += rmse(image, frame(full, camera, smallPicture(kSize)));
+  }
+  EXPECT_LT(moved, still) << "what was shaded before the mesh moved was of use";
+}
+
+}  // namespace
+}  // namespace chiaro
