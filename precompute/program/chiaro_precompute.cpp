@@ -17,10 +17,9 @@
 #include "assets/scene/material_override.h"
 #include "assets/scene/material_replacement.h"
 #include "assets/transfer/transfer.h"
-#include "assets/transfer/transfer_format.h"
 #include "precompute/bake.h"
-#include "precompute/compression/blas_name.h"
 #include "precompute/elapsed.h"
+#include "precompute/journal/program_identity.h"
 #include "precompute/memory_budget.h"
 #include "precompute/program/bake_json.h"
 #include "precompute/program/material_program.h"
@@ -216,14 +215,6 @@ void replaceMaterials(const Options& options, Scene& scene, const WarningHandler
   for (const std::string& one : options.materials) replaceMaterial(scene, one.substr(0, one.find('=')), one.substr(one.find('=') + 1), warn);
 }
 
-/// A bake that goes on must be the same program's: its version, and its very bytes where the system shows them.
-std::string identity() {
-  std::string text = "chiaro-precompute " CHIARO_VERSION ", " + blasName();
-  std::error_code error;
-  if (std::filesystem::exists("/proc/self/exe", error)) text += " " + checksumOf(readFile("/proc/self/exe"));
-  return text;
-}
-
 /// bake() knows no file names; the user knows nothing else.
 template <typename Work>
 auto naming(const std::string& file, const Work& work) {
@@ -261,7 +252,7 @@ ExitCode precompute(int argc, char** argv) {
   BakeReport report;
   const BakeStorage storage{.journal = partialOf(options.output),
                             .fresh = options.fresh,
-                            .program = identity(),
+                            .program = programIdentity("chiaro-precompute " CHIARO_VERSION),  // a bake that goes on must be the same program's
                             .memoryLimit = static_cast<std::size_t>(std::ceil(options.memoryLimitMib * 1048576.0)),
                             .notice = [&](const std::string& line) {
                               bar.clear();
