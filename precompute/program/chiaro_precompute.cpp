@@ -17,6 +17,7 @@
 #include "assets/scene/material_override.h"
 #include "assets/scene/material_replacement.h"
 #include "assets/transfer/transfer.h"
+#include "assets/transfer/transfer_format.h"
 #include "precompute/bake.h"
 #include "precompute/elapsed.h"
 #include "precompute/journal/program_identity.h"

@@ -14,6 +14,7 @@
 #include "precompute/report/report_options.h"
 #include "precompute/report/report_page.h"
 #include "precompute/report/report_tables.h"
+#include "precompute/report/sweep/sweep_report.h"
 #include "precompute/report/visibility/visibility_report.h"
 #include "runtime/render/renderer.h"
 
@@ -31,6 +32,8 @@ constexpr const char* kExamples = R"(Examples:
       ways to store visibility against traced rays; has options of its own, see chiaro-report visibility --help
   chiaro-report brdf -o brdf
       reflectance models as spherical Gaussians; see chiaro-report brdf --help
+  chiaro-report sweep builtin:ornament -o sweep
+      what each setting of a bake costs and buys; see chiaro-report sweep --help
 
 Exit codes: 0 done, 1 failed, 2 wrong usage, 3 unreadable input, 4 unwritable output, 5 under --fail-under, 130 interrupted.)";
 
@@ -120,6 +123,7 @@ int main(int argc, char** argv) {
   return chiaro::runMain("chiaro-report", [&] {
     if (argc > 1 && std::string_view(argv[1]) == "visibility") return chiaro::visibilityReport(argc - 1, argv + 1);
     if (argc > 1 && std::string_view(argv[1]) == "brdf") return chiaro::brdfReport(argc - 1, argv + 1);
+    if (argc > 1 && std::string_view(argv[1]) == "sweep") return chiaro::sweepReport(argc - 1, argv + 1);
     return report(argc, argv);
   });
 }

@@ -1,5 +1,6 @@
 #include "precompute/report/sweep/sweep_point.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -31,7 +32,10 @@ ErrorBySharpness numbers(const Json& json) {
 double SweepFigures::worst(const ErrorBySharpness& error) {
   double most = 0.0;
   for (const double value : error)
-    if (!(value <= most)) most = value;
+    if (!(value <= most)) {
+      if (!std::isfinite(value)) return std::numeric_limits<double>::quiet_NaN();
+      most = value;
+    }
   return most;
 }
 
