@@ -25,6 +25,7 @@
               borderColor: colours, backgroundColor: colours};
     });
     const shown = [...forms.map((form, f) => looks[f % looks.length]), ['line', text]];
+    const shownPoints = datasets.flatMap(set => set.data);
     // The legend shows the first point's colour, which may be a faint one: say the form's own.
     const legend = {usePointStyle: true, color: text, generateLabels: at => at.data.datasets.map((set, i) => ({
       text: set.label, datasetIndex: i, pointStyle: set.pointStyle, strokeStyle: shown[i][1], fillStyle: shown[i][1],
@@ -32,14 +33,14 @@
     const onFront = data.points.map((point, i) => ({x: point[cost], y: errors[i], on: front[i]})).filter(point => point.on && point.x > 0 && point.y > 0);
     onFront.sort((a, b) => a.x - b.x || b.y - a.y);
     datasets.push({label: 'front', data: onFront, type: 'line', stepped: true, pointRadius: 0, pointHitRadius: 0, borderColor: text, borderWidth: 1, pointStyle: 'line'});
-    const axis = title => ({type: 'logarithmic', title: {display: true, text: title, color: text}, grid: {color: line},
+    const axis = (title, values) => ({type: 'logarithmic', min: Math.min(...values) / 1.2, max: Math.max(...values) * 1.2, title: {display: true, text: title, color: text}, grid: {color: line},
                             ticks: {color: text, callback: value => /^[125]/.test(value.toExponential()) ? round(value) : ''}});
     const titles = {bytes_per_vertex: 'bytes a vertex', cpu_seconds: 'CPU seconds of a bake'};
     if (chart) chart.destroy();
     chart = new Chart(document.getElementById('chart'), {
       type: 'scatter', data: {datasets},
       options: {animation: false, responsive: true, maintainAspectRatio: false,
-                scales: {x: axis(titles[cost]), y: axis('mean |error| of the visible fraction')},
+                scales: {x: axis(titles[cost], shownPoints.map(point => point.x)), y: axis('mean |error| of the visible fraction', shownPoints.map(point => point.y))},
                 plugins: {legend: {position: 'bottom', labels: legend},
                           tooltip: {filter: item => item.dataset.label !== 'front',
                                     callbacks: {label: item => `${item.raw.label}: ${round(item.raw.x)}, error ${item.raw.y.toFixed(4)}`}}}}});

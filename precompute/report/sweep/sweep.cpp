@@ -1,5 +1,6 @@
 #include "precompute/report/sweep/sweep.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <limits>
 #include <optional>
@@ -15,6 +16,9 @@
 
 namespace chiaro {
 namespace {
+
+// Shares of a point's time, for its progress: a bake up to the end of its tracing, and all of it. The rest is measured.
+constexpr double kTracing = 0.6, kBaking = 0.9;
 
 SweepFigures measured(const VisibilityStudy& study, const VisibilityMethod& method, const ProgressHandler& progress) {
   const auto error = study.errorsOf({&method}, progress).front();
@@ -90,16 +94,18 @@ std::vector<SweepResult> sweep(const Scene& scene, const std::vector<SweepPoint>
       ++facts.resumed;
       continue;
     }
-    const auto name = std::to_string(i + 1) + " of " + std::to_string(points.size()) + ", " + labelOf(point) + ": ";
-    const ProgressHandler stage = [&](const std::string& what, double done) {
-      if (progress) progress(name + what, done);
-    };
     if (!study) study.emplace(scene, measure, progress);
+    const auto name = std::to_string(i + 1) + " of " + std::to_string(points.size()) + ", " + labelOf(point);
+    double shown = 0.0;
+    const ProgressHandler stage = [&](const std::string& what, double done) {
+      shown = std::max(shown, what == "visibility" ? kTracing * done : what == "lobes" ? kBaking + (1.0 - kBaking) * done : 0.0);
+      if (progress) progress(name, shown);
+    };
     SweepResult result{.point = point, .figures = {}};
     if (point.isBake()) {
       result.figures = measuredBake(scene, *study, bakeSettingsOf(point, measure), stage);
     } else {
-      stage("tracing", 0.0);
+      stage("visibility", 0.0);
       const auto method = makeBaseline(point, *study);
       result.figures = measured(*study, *method, stage);
     }
