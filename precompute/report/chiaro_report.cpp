@@ -1,6 +1,7 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
+#include <optional>
 #include <string_view>
 
 #include "assets/file.h"
@@ -28,6 +29,8 @@ constexpr const char* kExamples = R"(Examples:
   chiaro-report baked.glb -o report -e sky.hdr -r 0.2 -r 0.4 -r 0.7 --samples 512
   chiaro-report baked.glb -o report --fail-under 30
       exit code 5 when a picture is further than that from the truth
+  chiaro-report new.glb old.glb -o report --fail-over 0.005
+      pictures of two bakes beside each other; exit code 5 when they differ by more
   chiaro-report visibility builtin:ornament
       ways to store visibility against traced rays; has options of its own, see chiaro-report visibility --help
   chiaro-report brdf -o brdf
@@ -35,7 +38,7 @@ constexpr const char* kExamples = R"(Examples:
   chiaro-report sweep builtin:ornament -o sweep
       what each setting of a bake costs and buys; see chiaro-report sweep --help
 
-Exit codes: 0 done, 1 failed, 2 wrong usage, 3 unreadable input, 4 unwritable output, 5 under --fail-under, 130 interrupted.)";
+Exit codes: 0 done, 1 failed, 2 wrong usage, 3 unreadable input, 4 unwritable output, 5 under --fail-under or over --fail-over, 130 interrupted.)";
 
 Image8 errorMapOf(const Comparison& one, ErrorMapKind kind) {
   if (kind == ErrorMapKind::flip) return flipErrorMap(one.perceptual.flipMap, one.reference);
@@ -67,20 +70,31 @@ void printSummary(const Comparisons& comparisons, const std::filesystem::path& p
   std::printf("wrote %s\n", page.c_str());
 }
 
+Error overTolerance(const Comparison& one, const char* format, double value, double limit) {
+  char what[96];
+  std::snprintf(what, sizeof what, format, value, limit);
+  return {ExitCode::overTolerance, one.name, what, "look at its error map"};
+}
+
+void judgePsnr(const Comparisons& comparisons, double limit) {
+  for (const Comparison& one : comparisons.cases)
+    if (!(one.difference.psnr >= limit)) throw overTolerance(one, "%.2f dB is under the limit of %.2f dB", one.difference.psnr, limit);
+}
+
+void judgeRmse(const Comparisons& comparisons, const ReportOptions& options) {
+  for (const Comparison& one : comparisons.cases)
+    if (const double error = judgedError(one, options); !(error <= *options.failOver)) throw overTolerance(one, "an RMSE of %.5f is over the limit of %.5f", error, *options.failOver);
+}
+
 /// Throws when a picture is not good enough. The report is on disk by then.
 void judge(const Comparisons& comparisons, const ReportOptions& options) {
   for (const Comparison& one : comparisons.cases)
     if (one.difference.undefinedPixels > 0)
-      throw Error(options.failUnder ? ExitCode::overTolerance : ExitCode::failed, one.name,
+      throw Error(options.failUnder || options.failOver ? ExitCode::overTolerance : ExitCode::failed, one.name,
                   std::to_string(one.difference.undefinedPixels) + " pixels are not finite",
                   "look at its error map, they are magenta");
-  if (!options.failUnder) return;
-  for (const Comparison& one : comparisons.cases)
-    if (!(one.difference.psnr >= *options.failUnder)) {
-      char what[96];
-      std::snprintf(what, sizeof what, "%.2f dB is under the limit of %.2f dB", one.difference.psnr, *options.failUnder);
-      throw Error(ExitCode::overTolerance, one.name, what, "look at its error map");
-    }
+  if (options.failUnder) judgePsnr(comparisons, *options.failUnder);
+  if (options.failOver) judgeRmse(comparisons, options);
 }
 
 ExitCode report(int argc, char** argv) {
@@ -98,8 +112,13 @@ ExitCode report(int argc, char** argv) {
   baked.scene.lights.insert(baked.scene.lights.end(), options.lights.begin(), options.lights.end());
   if (const std::string left = leftOut(baked.scene); !left.empty() && !options.quiet)
     std::fprintf(stderr, "chiaro-report: warning: %s: %s, in the reference all of them\n", options.scene.c_str(), left.c_str());
+  std::optional<BakedScene> other;
+  if (!options.other.empty()) {
+    other = readBakedScene(options.other);
+    other->scene.lights.insert(other->scene.lights.end(), options.lights.begin(), options.lights.end());
+  }
   ProgressBar bar(progressStyle(options.quiet));
-  const Comparisons comparisons = compareAll(baked, options, [&](const std::string& stage, double done) {
+  const Comparisons comparisons = compareAll(baked, other ? &*other : nullptr, options, [&](const std::string& stage, double done) {
     throwIfInterrupted();
     bar.update(stage, done);
   });

@@ -77,6 +77,7 @@ void requireShare(float value, const char* option) {
 
 void declareReportOptions(CLI::App& app, ReportOptions& options, ReportOptionTexts& texts) {
   app.add_option("baked", texts.scene, "Baked scene (.glb) that chiaro-precompute wrote")->required()->type_name("FILE");
+  app.add_option("other", texts.other, "Another baked scene (.glb), whose pictures take the place of the brute-force reference")->type_name("OTHER");
   app.add_option("-o,--output", texts.output, "Folder for index.html, report.json, report.csv and the pictures")
       ->required()
       ->type_name("DIR");
@@ -119,6 +120,7 @@ void declareReportOptions(CLI::App& app, ReportOptions& options, ReportOptionTex
       ->type_name("NAME")
       ->capture_default_str();
   app.add_option("--fail-under", options.failUnder, "Exit with 5 when a comparison is under this PSNR")->type_name("DB");
+  app.add_option("--fail-over", options.failOver, "Exit with 5 when the RMSE of a comparison, without the reference's noise, is over this")->type_name("X");
   app.add_option("--threads", options.threads, "CPU threads, 0 is all; never changes the figures")
       ->type_name("N")
       ->capture_default_str();
@@ -127,6 +129,7 @@ void declareReportOptions(CLI::App& app, ReportOptions& options, ReportOptionTex
 
 void finishReportOptions(ReportOptions& options, const ReportOptionTexts& texts) {
   options.scene = texts.scene;
+  options.other = texts.other;
   options.output = texts.output;
   if (options.environments.empty()) options.environments = {"sunny", "overcast", "windows"};
   options.size = sizeFrom(texts.size);
@@ -146,6 +149,8 @@ void finishReportOptions(ReportOptions& options, const ReportOptionTexts& texts)
     throw usageError("--samples", "must lie between 2 and " + std::to_string(kMostSamples), "give a number such as 256");
   if (options.failUnder && !std::isfinite(*options.failUnder))
     throw usageError("--fail-under", "is not a number", "give decibels such as 30");
+  if (options.failOver && !(*options.failOver >= 0.0 && std::isfinite(*options.failOver)))
+    throw usageError("--fail-over", "is not a number from 0 on", "give an RMSE such as 0.01");
   if (options.threads < 0 || options.threads > 1024)
     throw usageError("--threads", "must lie between 0 and 1024", "give 0 for all cores");
   for (const std::string& name : options.environments) requireEnvironment(name);

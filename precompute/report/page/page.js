@@ -22,3 +22,10 @@ for (const table of document.querySelectorAll('table.sortable')) {
     table.tBodies[0].append(...rows.map(entry => entry.row));
   }));
 }
+// Of two pictures on each other, how much of the lower one is seen.
+for (const compare of document.querySelectorAll('.compare')) {
+  const slider = compare.querySelector('input');
+  const move = () => compare.style.setProperty('--at', slider.value + '%');
+  slider.addEventListener('input', move);
+  move();
+}
