@@ -18,6 +18,7 @@
 #include "precompute/compression/model_size.h"
 #include "precompute/compression/product.h"
 #include "precompute/compression/rate_control.h"
+#include "precompute/compression/target_search.h"
 #include "precompute/elapsed.h"
 #include "precompute/horizon_masks.h"
 #include "precompute/fraction_bytes.h"
@@ -325,18 +326,14 @@ void bakeClustered(const BakeTask& task, BakedScene& baked, BakeReport& report) 
   };
   report.seconds.compression += secondsSince(compressionStart);
   if (settings.targetError > 0.0) {
-    // The fewest bytes that do; more of them are never worse by more than the measurement's own noise.
     std::vector<double> rungs(std::begin(kByteRungs), std::end(kByteRungs));
     rungs.push_back(mostBytes(settings));
-    std::size_t low = 0, high = rungs.size() - 1, last = rungs.size();
-    while (low < high) {
-      last = (low + high) / 2;
-      compress(rungs[last]);
-      if (worstFraction(report.error) <= settings.targetError) high = last;
-      else low = last + 1;
-    }
-    if (last != low) compress(rungs[low]);
-    report.missedTarget = !(worstFraction(report.error) <= settings.targetError);
+    const auto found = fewestBytes(rungs, settings.targetError, [&](double bytes) {
+      compress(bytes);
+      return worstFraction(report.error);
+    });
+    if (!found.isLast) compress(found.bytes);
+    report.missedTarget = !(found.error <= settings.targetError);
   } else {
     compress(mostBytes(settings));
   }

@@ -44,9 +44,9 @@ std::vector<bool> frontOf(const std::vector<SweepResult>& results, SweepPlace pl
 
 std::string sweepTable(const SweepStudy& study) {
   char line[200];
-  std::snprintf(line, sizeof line, "%s: %zu vertices, %zu triangles; %zu points, %zu of them known before\n\n%-58s%14s%14s%10s%10s  front\n", study.scene.c_str(),
-                study.facts.vertices, study.facts.triangles, study.results.size(), study.facts.resumed, "setting", "bytes/vertex", "CPU seconds", "error", "inside");
-  std::string text = line;
+  std::snprintf(line, sizeof line, "%-58s%14s%14s%10s%10s  front\n", "setting", "bytes/vertex", "CPU seconds", "error", "inside");
+  std::string text = study.scene + ": " + std::to_string(study.facts.vertices) + " vertices, " + std::to_string(study.facts.triangles) + " triangles; " +
+                     std::to_string(study.results.size()) + " points, " + std::to_string(study.facts.resumed) + " of them known before\n\n" + line;
   const Fronts fronts(study);
   for (std::size_t i = 0; i < study.results.size(); ++i) {
     const auto& result = study.results[i];
