@@ -10,8 +10,10 @@
 #include "assets/program/program.h"
 #include "assets/program/progress_bar.h"
 #include "precompute/report/brdf/brdf_report.h"
+#include "precompute/report/budget/budget_report.h"
 #include "precompute/report/comparison.h"
 #include "precompute/report/error_map.h"
+#include "precompute/report/report_folder.h"
 #include "precompute/report/report_options.h"
 #include "precompute/report/report_page.h"
 #include "precompute/report/report_tables.h"
@@ -37,6 +39,8 @@ constexpr const char* kExamples = R"(Examples:
       reflectance models as spherical Gaussians; see chiaro-report brdf --help
   chiaro-report sweep builtin:ornament -o sweep
       what each setting of a bake costs and buys; see chiaro-report sweep --help
+  chiaro-report budget builtin:ornament -o budget
+      which stage of a bake causes which error; see chiaro-report budget --help
 
 Exit codes: 0 done, 1 failed, 2 wrong usage, 3 unreadable input, 4 unwritable output, 5 under --fail-under or over --fail-over, 130 interrupted.)";
 
@@ -126,7 +130,7 @@ ExitCode report(int argc, char** argv) {
 
   ReportFacts facts = factsOf(baked, options);
   facts.version = CHIARO_VERSION;
-  makeReportFolder(options);
+  makeFolder(options.output);
   const std::vector<CasePictures> pictures = writePictures(comparisons, options);
   writeFileAtomically(options.output / "report.json", reportJson(facts, options, comparisons));
   writeFileAtomically(options.output / "report.csv", reportCsv(comparisons));
@@ -143,6 +147,7 @@ int main(int argc, char** argv) {
     if (argc > 1 && std::string_view(argv[1]) == "visibility") return chiaro::visibilityReport(argc - 1, argv + 1);
     if (argc > 1 && std::string_view(argv[1]) == "brdf") return chiaro::brdfReport(argc - 1, argv + 1);
     if (argc > 1 && std::string_view(argv[1]) == "sweep") return chiaro::sweepReport(argc - 1, argv + 1);
+    if (argc > 1 && std::string_view(argv[1]) == "budget") return chiaro::budgetReport(argc - 1, argv + 1);
     return report(argc, argv);
   });
 }

@@ -6,9 +6,9 @@
 
 #include "assets/builtin/environment.h"
 #include "assets/error.h"
-#include "assets/file.h"
 #include "assets/scene/light_spec.h"
 #include "assets/scene/material_override.h"
+#include "precompute/report/report_folder.h"
 
 namespace chiaro {
 namespace {
@@ -54,19 +54,6 @@ std::string builtinNames() {
   std::string text;
   for (const std::string& name : builtinEnvironmentNames()) text += (text.empty() ? "" : ", ") + name;
   return text;
-}
-
-Error folderError(const std::filesystem::path& folder, const std::string& reason) {
-  return outputError(folder.string(), "the folder cannot be made: " + reason, "give another one with -o");
-}
-
-/// Makes nothing: whatever else is wrong with the command leaves no empty folder behind.
-void requireFolderCanBeMade(const std::filesystem::path& folder) {
-  std::error_code ignored;
-  std::filesystem::path standing = std::filesystem::absolute(folder, ignored).lexically_normal();
-  while (!std::filesystem::exists(standing, ignored) && standing.has_relative_path()) standing = standing.parent_path();
-  if (!std::filesystem::is_directory(standing, ignored)) throw folderError(folder, standing.string() + " is not a folder");
-  requireWritable(standing / "index.html");
 }
 
 void requireShare(float value, const char* option) {
@@ -155,12 +142,6 @@ void finishReportOptions(ReportOptions& options, const ReportOptionTexts& texts)
     throw usageError("--threads", "must lie between 0 and 1024", "give 0 for all cores");
   for (const std::string& name : options.environments) requireEnvironment(name);
   requireFolderCanBeMade(options.output);
-}
-
-void makeReportFolder(const ReportOptions& options) {
-  std::error_code failure;
-  std::filesystem::create_directories(options.output, failure);
-  if (failure) throw folderError(options.output, failure.message());
 }
 
 }  // namespace chiaro

@@ -64,7 +64,5 @@ void declareReportOptions(CLI::App& app, ReportOptions& options, ReportOptionTex
 /// Checks and converts what parse() left, and that the output folder can be made. Makes nothing. Throws Error (usage,
 /// unreadableInput, unwritableOutput).
 void finishReportOptions(ReportOptions& options, const ReportOptionTexts& texts);
-/// Makes the output folder. Throws Error (unwritableOutput).
-void makeReportFolder(const ReportOptions& options);
 
 }  // namespace chiaro

@@ -9,6 +9,7 @@
 #include "assets/program/progress_bar.h"
 #include "precompute/journal/program_identity.h"
 #include "precompute/report/prepared_scene.h"
+#include "precompute/report/report_folder.h"
 #include "precompute/report/sweep/sweep_options.h"
 #include "precompute/report/sweep/sweep_page.h"
 
@@ -23,12 +24,6 @@ constexpr const char* kExamples = R"(Examples:
 
 Exit codes: 0 done, 1 failed, 2 wrong usage, 3 unreadable input, 4 unwritable output, 130 interrupted.)";
 
-void makeFolder(const std::filesystem::path& folder) {
-  std::error_code failure;
-  std::filesystem::create_directories(folder, failure);
-  if (failure) throw outputError(folder.string(), "the folder cannot be made: " + failure.message(), "give another one with -o");
-}
-
 }  // namespace
 
 ExitCode sweepReport(int argc, const char* const* argv) {
@@ -40,6 +35,7 @@ ExitCode sweepReport(int argc, const char* const* argv) {
   if (!readCommandLine(app, argc, argv)) return ExitCode::done;
   finishSweepOptions(options);
   if (isBakedFile(options.scene)) throw usageError("scene", options.scene + " is baked already", "give the scene that it was baked from");
+  requireFolderCanBeMade(options.output);
   catchInterrupts();
 
   // The folder is made when there is something to put into it: a scene that cannot be read leaves nothing.
