@@ -17,6 +17,7 @@
 #include "precompute/report/report_options.h"
 #include "precompute/report/report_page.h"
 #include "precompute/report/report_tables.h"
+#include "precompute/report/stability/stability_report.h"
 #include "precompute/report/sweep/sweep_report.h"
 #include "precompute/report/visibility/visibility_report.h"
 #include "runtime/render/renderer.h"
@@ -41,6 +42,8 @@ constexpr const char* kExamples = R"(Examples:
       what each setting of a bake costs and buys; see chiaro-report sweep --help
   chiaro-report budget builtin:ornament -o budget
       which stage of a bake causes which error; see chiaro-report budget --help
+  chiaro-report stability -o stability
+      the shared functions in float and GLSL against double; see chiaro-report stability --help
 
 Exit codes: 0 done, 1 failed, 2 wrong usage, 3 unreadable input, 4 unwritable output, 5 under --fail-under or over --fail-over, 130 interrupted.)";
 
@@ -147,6 +150,7 @@ int main(int argc, char** argv) {
     if (argc > 1 && std::string_view(argv[1]) == "visibility") return chiaro::visibilityReport(argc - 1, argv + 1);
     if (argc > 1 && std::string_view(argv[1]) == "brdf") return chiaro::brdfReport(argc - 1, argv + 1);
     if (argc > 1 && std::string_view(argv[1]) == "sweep") return chiaro::sweepReport(argc - 1, argv + 1);
+    if (argc > 1 && std::string_view(argv[1]) == "stability") return chiaro::stabilityReport(argc - 1, argv + 1);
     if (argc > 1 && std::string_view(argv[1]) == "budget") return chiaro::budgetReport(argc - 1, argv + 1);
     return report(argc, argv);
   });

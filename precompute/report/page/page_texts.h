@@ -10,5 +10,6 @@ std::string_view pageStyle();
 std::string_view pageScript();   ///< tables that sort, pictures with a slider
 std::string_view sweepScript();   ///< the chart of a sweep
 std::string_view budgetScript();  ///< the charts of a budget
+std::string_view stabilityScript();
 
 }  // namespace chiaro
