@@ -56,6 +56,18 @@ TEST_F(ReportBudget, AddsUpToTheBakesErrorAndEndsInNoise) {
     }
   // At a vertex nothing is interpolated.
   for (std::size_t s = 0; s < 7; ++s) EXPECT_LE(std::abs(stages[4]["caused_vertices"][s].get<double>()), 0.004) << s;
+  ASSERT_EQ(json["worst_points"].size(), 12u);
+  double sum = 0.0;
+  for (std::size_t s = 0; s < 7; ++s) sum += 40.0 * (stages[0]["error_vertices"][s].get<double>() + stages[0]["error_triangles"][s].get<double>()) / 7.0;
+  double before = 1.0, found = 0.0;
+  for (const auto& one : json["worst_points"]) {
+    const double error = one["error"];
+    EXPECT_TRUE(error <= before && error > sum / 80.0) << error << ", the mean is " << sum / 80.0;
+    EXPECT_GE(one["largest"], error);
+    before = error;
+    found += error;
+  }
+  EXPECT_LE(found, sum);
   const std::string csv = textOf("budget/budget.csv");
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 2 * 6);
   EXPECT_THAT(run_.out, HasSubstr("half-space and maps"));

@@ -2,11 +2,12 @@
 
 #include "precompute/report/budget/exact_methods.h"
 #include "precompute/report/visibility/transfer_method.h"
-#include "precompute/report/visibility/visibility_study.h"
 #include "precompute/row_layout.h"
 
 namespace chiaro {
 namespace {
+
+constexpr std::size_t kWorstPoints = 12;
 
 BakedScene bakeStage(const Scene& scene, const BakeSettings& settings, const std::string& name, const ProgressHandler& progress) {
   BakeReport report;
@@ -42,13 +43,15 @@ Budget errorBudget(const Scene& scene, const BakeSettings& given, const Visibili
   const auto baked = bakeStage(scene, settings, "bake", progress);
   const auto& transfer = baked.transfer;
   Budget budget{.vertices = scene.vertexCount(), .triangles = scene.triangleCount(), .bytesPerVertex = 0.0, .functions = static_cast<int>(transfer.clustered.functions.count()),
-                .clusters = static_cast<int>(transfer.clustered.clusters.size()), .truthNoise = study.facts().truthNoise, .stages = {}};
+                .clusters = static_cast<int>(transfer.clustered.clusters.size()), .truthNoise = study.facts().truthNoise, .worst = {}, .stages = {}};
   const auto add = [&](const VisibilityMethod& method, const std::string& what, const std::string& cause) {
     const auto error = study.errorsOf({&method}, progress).front();
     if (budget.stages.empty()) budget.bytesPerVertex = error.bytesPerVertex;
     budget.stages.push_back({.what = what, .cause = cause, .atVertices = error.atVertices, .inTriangles = error.inTriangles});
   };
-  add(*makeTransferMethod(transfer), "the bake", "rounding");
+  const auto asBaked = makeTransferMethod(transfer);
+  add(*asBaked, "the bake", "rounding");
+  budget.worst = study.worstPoints(*asBaked, kWorstPoints, progress);
   {
     const auto exact = bakeStage(scene, withoutRounding(settings, transfer), "bake without rounding", progress);
     add(*makeTransferMethod(exact.transfer), "without rounding", "functions and clusters");

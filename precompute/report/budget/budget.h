@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "precompute/bake.h"
-#include "precompute/report/visibility/visibility_comparison.h"
+#include "precompute/report/visibility/visibility_study.h"
 
 namespace chiaro {
 
@@ -21,6 +21,7 @@ struct Budget {
   double bytesPerVertex = 0.0;
   int functions = 0, clusters = 0;
   ErrorBySharpness truthNoise{};    ///< VisibilityComparison::truthNoise
+  std::vector<PointError> worst;    ///< of the bake as it is: at most 12
   std::vector<BudgetStage> stages;  ///< the first: the bake as it is; the last: everything exact
 };
 

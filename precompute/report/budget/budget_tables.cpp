@@ -66,6 +66,16 @@ std::string placeTable(const BudgetStudy& study, const NamedPlace& where) {
   return "<h2>Errors " + std::string(where.title) + ", by sharpness</h2>\n" + sortableTable(where.id, heads, rows);
 }
 
+std::string worstTable(const Budget& budget) {
+  std::vector<TableRow> rows;
+  for (const auto& one : budget.worst)
+    rows.push_back({.cells = {textCell(one.atVertex ? "vertex" : "inside a triangle"), numberCell("%.0f", static_cast<double>(one.vertex)), numberCell("%.4g", one.position.x),
+                              numberCell("%.4g", one.position.y), numberCell("%.4g", one.position.z), numberCell("%.4f", one.error), numberCell("%.4f", one.worst),
+                              numberCell("%g", one.worstSharpness)}});
+  return "<h2>Where the bake errs most</h2>\n<p class=\"soft\">Of the measured points. Inside triangles the vertex is the nearest corner; positions in metres.</p>\n" +
+         sortableTable("worst", {"point", "vertex", "x", "y", "z", "mean error", "largest", "at sharpness"}, rows);
+}
+
 }  // namespace
 
 std::string budgetTable(const BudgetStudy& study) {
@@ -108,6 +118,10 @@ std::string budgetJson(const BudgetStudy& study, const std::string& version) {
     }
     json["stages"].push_back(std::move(stage));
   }
+  json["worst_points"] = Json::array();
+  for (const auto& one : budget.worst)
+    json["worst_points"].push_back({{"at_vertex", one.atVertex}, {"vertex", one.vertex}, {"position", {one.position.x, one.position.y, one.position.z}}, {"error", one.error},
+                                    {"largest", one.worst}, {"largest_at_sharpness", one.worstSharpness}});
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
@@ -149,7 +163,7 @@ std::string budgetPage(const BudgetStudy& study, const std::string& version) {
       "share, so all shares add up to the error of the bake. A share below zero: that stage hides a part of another's error. Mean difference of the visible "
       "fraction of lobes from traced rays, " +
       std::to_string(study.measure.vertices) + " random vertices" + (study.measure.points > 0 ? " and " + std::to_string(study.measure.points) + " points inside triangles" : "") +
-      ", 16 axes each.</p>\n<div class=\"row\">\n" + charts + "</div>\n" + tables;
+      ", 16 axes each.</p>\n<div class=\"row\">\n" + charts + "</div>\n" + tables + worstTable(budget);
   body += "<p class=\"soft\">" + htmlText(study.scene) + (study.ground ? " over a ground" : "") + ", " + std::to_string(budget.vertices) + " vertices, " +
           formatted("%.1f", budget.bytesPerVertex) + " bytes each, " + std::to_string(budget.functions) + " functions, " + std::to_string(budget.clusters) +
           " clusters. chiaro-report " + htmlText(version) + ".</p>\n";

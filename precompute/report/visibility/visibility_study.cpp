@@ -1,6 +1,7 @@
 #include "precompute/report/visibility/visibility_study.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include "assets/error.h"
 
@@ -68,6 +69,22 @@ std::vector<MethodError> VisibilityStudy::errorsOf(const std::vector<const Visib
                       .inTriangles = meanError(sums[m], atVertices_, truth_.points().size())});
   }
   return errors;
+}
+
+std::vector<PointError> VisibilityStudy::worstPoints(const VisibilityMethod& method, std::size_t count, const ProgressHandler& progress) const {
+  const auto sums = truth_.errorSums({&method}, input_.threads, stage(progress, "lobes")).front();
+  std::vector<PointError> all;
+  for (std::size_t i = 0; i < sums.size(); ++i) {
+    const auto& point = truth_.points()[i];
+    const auto mean = meanError(sums, i, i + 1);
+    const auto worst = static_cast<std::size_t>(std::max_element(mean.begin(), mean.end()) - mean.begin());
+    const auto corner = static_cast<std::size_t>(std::max_element(point.weights.begin(), point.weights.end()) - point.weights.begin());
+    all.push_back({.point = i, .atVertex = i < atVertices_, .vertex = point.vertices[corner], .position = glm::dvec3(point.view.front),
+                   .error = std::accumulate(mean.begin(), mean.end(), 0.0) / static_cast<double>(mean.size()), .worst = mean[worst], .worstSharpness = kLobeSharpness[worst]});
+  }
+  std::stable_sort(all.begin(), all.end(), [](const PointError& a, const PointError& b) { return a.error > b.error; });
+  all.resize(std::min(count, all.size()));
+  return all;
 }
 
 VisibilityComparison VisibilityStudy::facts() const {

@@ -6,6 +6,17 @@
 
 namespace chiaro {
 
+/// One point where a method errs.
+struct PointError {
+  std::size_t point = 0;      ///< in the order of the study
+  bool atVertex = false;
+  std::size_t vertex = 0;     ///< of the prepared scene: the point itself, or the nearest corner
+  glm::dvec3 position{0.0};   ///< metres, world space
+  double error = 0.0;         ///< mean |error| over the axes and sharpnesses
+  double worst = 0.0;         ///< mean |error| over the axes, of the sharpness with the largest
+  double worstSharpness = 0.0;
+};
+
 class VisibilityStudy {
  public:
   /// scene: as prepareScene() leaves it; must outlive this. Throws Error where it has no surface.
@@ -14,6 +25,8 @@ class VisibilityStudy {
   /// What methods are made from; of VisibilitySettings::resolution and ::terms, which a copy may change.
   const VisibilityInput& input() const { return input_; }
   std::vector<MethodError> errorsOf(const std::vector<const VisibilityMethod*>& methods, const ProgressHandler& progress) const;
+  /// At most `count` points, the one with the largest PointError::error first.
+  std::vector<PointError> worstPoints(const VisibilityMethod& method, std::size_t count, const ProgressHandler& progress) const;
   /// Sizes and truth; no methods.
   VisibilityComparison facts() const;
 
