@@ -125,7 +125,7 @@ std::string settings(const ReportFacts& facts, const ReportOptions& options, con
   return html + "</dl>\n";
 }
 
-std::string errorMapLegend(ErrorMapKind kind) {
+std::string errorMapLegend(ErrorMapKind kind, bool pair) {
   if (kind != ErrorMapKind::difference)
     return std::string("<h2>Error maps</h2><p class=\"soft\">") +
            (kind == ErrorMapKind::flip ? "FLIP of the pictures as shown" : "HDR FLIP, the worst of all exposures") +
@@ -134,7 +134,7 @@ std::string errorMapLegend(ErrorMapKind kind) {
   const std::string range = formatted("%.2g", kErrorMapRange);
   std::string html;
   html +=
-      "<h2>Error maps</h2><p class=\"soft\">Runtime minus reference, mean of the channels. Black is equal, magenta undefined, "
+      "<h2>Error maps</h2><p class=\"soft\">" + std::string(pair ? "The first bake minus the other" : "Runtime minus reference") + ", mean of the channels. Black is equal, magenta undefined, "
       "grey no object.</p>\n";
   html += "<div class=\"scale\"></div><div class=\"ends soft\"><span>&minus;" + range + " too dark</span><span>0</span><span>+" +
           range + " too bright</span></div>\n";
@@ -152,7 +152,7 @@ std::string reportPage(const ReportFacts& facts, const ReportOptions& options, c
              "baked transfer in it.";
   html += " Figures are of tone-mapped, display-encoded colours from 0 to 1, over the pixels that show an object.";
   if (!pair) html += " The reference is drawn in two halves with independent noise; how they differ gives the noise, and the PSNR without it.";
-  html += "</p>\n" + table(options, comparisons) + errorMapLegend(options.errorMap);
+  html += "</p>\n" + table(options, comparisons) + errorMapLegend(options.errorMap, pair);
   for (std::size_t i = 0; i < comparisons.cases.size(); ++i) {
     const Comparison& one = comparisons.cases[i];
     html += "<h2 id=\"" + one.name + "\">" + titleOf(one) + ": " + formatted("%.2f dB", one.difference.psnr) + "</h2>\n<div class=\"row\">\n";

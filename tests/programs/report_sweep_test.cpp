@@ -12,6 +12,7 @@
 #include <filesystem>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 #include <thread>
 
 #include "assets/error.h"
@@ -121,15 +122,15 @@ TEST(ReportSweep, WritesEverythingItSays) {
   EXPECT_THAT(run.out, HasSubstr("10 points, 0 of them known before"));
 }
 
-/// Starts a sweep and kills it as soon as one point is in `store`.
-void killEarly(const std::vector<std::string>& arguments, const std::filesystem::path& store) {
+/// Starts a sweep, sends it `signal` as soon as one point is in `store`, and waits: its status.
+int stoppedEarly(const std::vector<std::string>& arguments, const std::filesystem::path& store, int signal) {
   std::vector<std::string> words{std::string(std::getenv("CHIARO_BIN_DIR")) + "/chiaro-report", "-q"};
   words.insert(words.begin() + 1, arguments.begin(), arguments.end());
   std::vector<char*> pointers;
   for (auto& word : words) pointers.push_back(word.data());
   pointers.push_back(nullptr);
   pid_t child = 0;
-  ASSERT_EQ(posix_spawn(&child, words[0].c_str(), nullptr, nullptr, pointers.data(), environ), 0);
+  if (posix_spawn(&child, words[0].c_str(), nullptr, nullptr, pointers.data(), environ) != 0) throw std::runtime_error("cannot run " + words[0]);
   int status = 0;
   pid_t ended = 0;
   std::error_code absent;
@@ -138,14 +139,16 @@ void killEarly(const std::vector<std::string>& arguments, const std::filesystem:
     if (ended != 0) break;
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
-  ::kill(child, SIGKILL);
-  if (ended == 0) ::waitpid(child, &status, 0);
-  ASSERT_TRUE(WIFSIGNALED(status)) << "the sweep was over before it could be killed";
+  if (ended != 0) return status;
+  ::kill(child, signal);
+  ::waitpid(child, &status, 0);
+  return status;
 }
 
 TEST(ReportSweep, GoesOnAfterAKill) {
   std::filesystem::remove_all("sweep_killed");
-  killEarly(quick("sweep_killed", true), "sweep_killed/sweep.jsonl");
+  const int killed = stoppedEarly(quick("sweep_killed", true), "sweep_killed/sweep.jsonl", SIGKILL);
+  ASSERT_TRUE(WIFSIGNALED(killed)) << "the sweep was over before it could be killed";
   EXPECT_FALSE(std::filesystem::exists("sweep_killed/index.html"));
   const std::string before = textOf("sweep_killed/sweep.jsonl");
   const auto done = std::count(before.begin(), before.end(), '\n');
@@ -161,6 +164,16 @@ TEST(ReportSweep, GoesOnAfterAKill) {
   ASSERT_EQ(runProgram("chiaro-report", quick("sweep_killed", true)).code, 0);
   EXPECT_EQ(textOf("sweep_killed/sweep.jsonl"), after);
   EXPECT_EQ(textOf("sweep_killed/index.html"), page);
+}
+
+TEST(ReportSweep, AnInterruptKeepsWhatIsFinished) {
+  std::filesystem::remove_all("sweep_interrupted");
+  const int status = stoppedEarly(quick("sweep_interrupted", true), "sweep_interrupted/sweep.jsonl", SIGINT);
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 130);
+  const std::string kept = textOf("sweep_interrupted/sweep.jsonl");
+  EXPECT_GE(std::count(kept.begin(), kept.end(), '\n'), 1);
+  EXPECT_FALSE(std::filesystem::exists("sweep_interrupted/index.html"));
 }
 
 void expectFailure(const std::vector<std::string>& arguments, int code, const std::string& part) {

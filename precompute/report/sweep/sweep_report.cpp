@@ -47,12 +47,18 @@ ExitCode sweepReport(int argc, const char* const* argv) {
   SweepStore store(options.output / "sweep.jsonl", sweepKey(scene, options.measure, programIdentity("chiaro-report sweep " CHIARO_VERSION)));
 
   ProgressBar bar(progressStyle(options.quiet));
-  namingScene(options.scene, [&] {
+  const auto work = [&] {
     study.results = sweep(scene, pointsOf(options), options.measure, store, study.facts, [&](const std::string& stage, double done) {
       throwIfInterrupted();
       bar.update(stage, done);
     });
-  });
+  };
+  try {
+    namingScene(options.scene, work);
+  } catch (const Error& error) {
+    if (error.code() != ExitCode::interrupted) throw;
+    throw Error(ExitCode::interrupted, "interrupted", "the page is not written, what is finished is in " + (options.output / "sweep.jsonl").string(), "run the same command again to go on");
+  }
   bar.clear();
 
   writeFileAtomically(options.output / "sweep.json", sweepJson(study, CHIARO_VERSION));
