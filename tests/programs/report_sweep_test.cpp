@@ -91,10 +91,20 @@ TEST(SweepFigures, WorstIsUndefinedWhereOneIs) {
   EXPECT_TRUE(std::isnan(SweepFigures::worst(error)));
 }
 
-TEST(ReportSweep, WritesEverythingItSays) {
-  std::filesystem::remove_all("sweep_all");
-  const Finished run = runProgram("chiaro-report", quick("sweep_all"));
-  ASSERT_EQ(run.code, 0) << run.err;
+/// One sweep that several tests look at.
+class FinishedSweep : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    std::filesystem::remove_all("sweep_all");
+    run_ = runProgram("chiaro-report", quick("sweep_all"));
+  }
+  static Finished run_;
+};
+
+Finished FinishedSweep::run_;
+
+TEST_F(FinishedSweep, WritesEverythingItSays) {
+  ASSERT_EQ(run_.code, 0) << run_.err;
   const auto json = nlohmann::json::parse(textOf("sweep_all/sweep.json"));
   EXPECT_EQ(json["program"], "chiaro-report sweep");
   ASSERT_EQ(json["points"].size(), 2u + 1u + 7u);  // joint, pca, baselines
@@ -119,7 +129,7 @@ TEST(ReportSweep, WritesEverythingItSays) {
   EXPECT_EQ(front, paretoFront(cost, error));
   const std::string csv = textOf("sweep_all/sweep.csv");
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 10);
-  EXPECT_THAT(run.out, HasSubstr("10 points, 0 of them known before"));
+  EXPECT_THAT(run_.out, HasSubstr("10 points, 0 of them known before"));
 }
 
 /// Starts a sweep, sends it `signal` as soon as one point is in `store`, and waits: its status.
@@ -198,12 +208,10 @@ TEST(ReportSweep, Errors) {
   expectFailure({"sweep", "builtin:sphere", "-o", "a_file/sweep"}, 4, "a_file");
 }
 
-TEST(ReportSweep, PageInABrowser) {
+TEST_F(FinishedSweep, PageInABrowser) {
   if (!chromium()) GTEST_SKIP() << "no chromium: install it, or name it in CHIARO_CHROMIUM";
-  std::filesystem::remove_all("sweep_page");
-  const Finished run = runProgram("chiaro-report", quick("sweep_page"));
-  ASSERT_EQ(run.code, 0) << run.err;
-  const std::string dom = documentAfter("sweep_page/index.html", R"(
+  ASSERT_EQ(run_.code, 0) << run_.err;
+  const std::string dom = documentAfter("sweep_all/index.html", R"(
     const root = document.documentElement.dataset, chart = Chart.getChart('chart');
     const canvas = document.getElementById('chart'), pixels = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data;
     root.inked = pixels.some(value => value !== 0);
