@@ -3,7 +3,7 @@
 #include <limits>
 #include <random>
 
-#include "tests/lobe/parity.h"
+#include "shaders/parity/parity.h"
 
 namespace chiaro::parity {
 namespace {
