@@ -87,11 +87,11 @@ foreach(room IN LISTS rooms)
   # The lobe maths is GLSL text that the C++ headers include. What only the programs use stays behind.
   install(DIRECTORY "${PROJECT_SOURCE_DIR}/${room}/" DESTINATION "${header_dir}/${room}"
     FILES_MATCHING PATTERN "*.h" PATTERN "*.glsl"
-    REGEX "/(shaders/stage|precompute/report|precompute/program|runtime/viewer)$" EXCLUDE)
+    REGEX "/(shaders/parity|shaders/stage|precompute/report|precompute/program|runtime/parity|runtime/viewer)$" EXCLUDE)
 endforeach()
 # The runtime carries its shaders inside; these are for reading, and for CHIARO_SHADER_PATH.
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/shaders" DESTINATION "${CMAKE_INSTALL_DATADIR}/chiaro"
-  FILES_MATCHING PATTERN "*.glsl" PATTERN "*.vert" PATTERN "*.frag" PATTERN "*.comp")
+  FILES_MATCHING PATTERN "*.glsl" PATTERN "*.vert" PATTERN "*.frag" PATTERN "*.comp" REGEX "/shaders/parity$" EXCLUDE)
 install(FILES "${PROJECT_SOURCE_DIR}/LICENSE" "${PROJECT_SOURCE_DIR}/README.md" DESTINATION "${CMAKE_INSTALL_DOCDIR}")
 
 configure_package_config_file("${PROJECT_SOURCE_DIR}/cmake/chiaroConfig.cmake.in" "${PROJECT_BINARY_DIR}/chiaroConfig.cmake"

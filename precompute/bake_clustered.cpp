@@ -18,12 +18,14 @@
 #include "precompute/compression/model_size.h"
 #include "precompute/compression/product.h"
 #include "precompute/compression/rate_control.h"
+#include "precompute/compression/target_search.h"
 #include "precompute/elapsed.h"
 #include "precompute/horizon_masks.h"
 #include "precompute/fraction_bytes.h"
 #include "precompute/journal/pca_record.h"
 #include "precompute/journal/row_store.h"
 #include "precompute/parallel.h"
+#include "precompute/row_layout.h"
 #include "precompute/ssdf/ssdf.h"
 #include "precompute/transfer_rows.h"
 #include "shaders/cpp/lobe.h"
@@ -33,17 +35,10 @@ namespace {
 
 using RowMatrix = RowMajor<float>;
 
-// Sharpness 3, 10.5, 36.75, 128.6, and maps whose texels are about as wide as half a lobe.
-const std::vector<VisibilityLevel> kLevels{{3.0f, 12}, {10.5f, 20}, {36.75f, 28}, {128.625f, 44}};
-/// With levels, only lobes of half the last one's sharpness and more read the SSDF: two to three of their standard deviations.
-constexpr float kJointClamp = 0.265f;
-/// Of the stored distances: 2.7 texels of 64 x 64 (measured on the built-in scene: from .12 to .18 alike; without, the functions lose a sixth more). Between
-/// coarser texels the bend would show.
-float jointSoftness(int resolution) { return std::max(0.15f, 9.6f / static_cast<float>(resolution)); }
 /// What a stored distance, and the share of a lobe, weigh in the joint error. The sharpest level holds the most detail and, unweighted, would be the worst
 /// kept.
 constexpr float kSsdfWeight = 1.4f;
-float levelWeight(const VisibilityLevel& level) { return level == kLevels.back() ? 0.37f : 0.09f; }
+constexpr float kLevelWeight = 0.09f, kSharpestLevelWeight = 0.37f;
 constexpr float kFractionWeight = 0.2f;
 
 constexpr std::size_t kMostSampled = 8192;     // rows the shared functions are made from,
@@ -75,10 +70,12 @@ std::vector<float> columnWeights(const TransferRows& rows, bool joint) {
   auto weight = rows.storedGrid().rowMajorSolidAngle();
   if (!joint) return weight;
   for (float& w : weight) w *= kSsdfWeight * kSsdfWeight;
-  for (const auto& level : rows.layout().levels)
+  const auto& levels = rows.layout().levels;
+  for (const auto& level : levels) {
+    const float own = level == levels.back() ? kSharpestLevelWeight : kLevelWeight;
     for (int t = 0; t < level.resolution * level.resolution; ++t)
-      weight.push_back(levelWeight(level) * levelWeight(level) *
-                       static_cast<float>(lobe64::octahedralTexelSolidAngle({t % level.resolution, t / level.resolution}, level.resolution)));
+      weight.push_back(own * own * static_cast<float>(lobe64::octahedralTexelSolidAngle({t % level.resolution, t / level.resolution}, level.resolution)));
+  }
   const auto directions = rows.layout().directions.size();
   weight.insert(weight.end(), directions, kFractionWeight * kFractionWeight * 4.0f * std::numbers::pi_v<float> / static_cast<float>(directions));
   return weight;
@@ -176,14 +173,7 @@ void bakeClustered(const BakeTask& task, BakedScene& baked, BakeReport& report) 
   const auto& viewpoints = task.viewpoints;
   auto& transfer = baked.transfer;
   const bool joint = settings.compression == Compression::joint;
-  const TransferRows::Layout layout{.resolution = settings.resolution,
-                              .samplingResolution = settings.samplingResolution,
-                              .clamp = joint ? kJointClamp : kMaxDistance,
-                              .softness = joint ? jointSoftness(settings.resolution) : 0.0f,
-                              .leastOccluder = settings.leastOccluder,
-                              .levels = joint ? kLevels : std::vector<VisibilityLevel>{},
-                              .directions = transfer.directions,
-                              .directionSharpness = transfer.directionSharpness};
+  const auto layout = rowLayout(settings, transfer.directions, transfer.directionSharpness);
   const TransferRows rows(task.rays, viewpoints, layout);
   transfer.clustered.levels = layout.levels;
   transfer.clustered.ssdfSoftness = layout.softness;
@@ -325,18 +315,14 @@ void bakeClustered(const BakeTask& task, BakedScene& baked, BakeReport& report) 
   };
   report.seconds.compression += secondsSince(compressionStart);
   if (settings.targetError > 0.0) {
-    // The fewest bytes that do; more of them are never worse by more than the measurement's own noise.
     std::vector<double> rungs(std::begin(kByteRungs), std::end(kByteRungs));
     rungs.push_back(mostBytes(settings));
-    std::size_t low = 0, high = rungs.size() - 1, last = rungs.size();
-    while (low < high) {
-      last = (low + high) / 2;
-      compress(rungs[last]);
-      if (worstFraction(report.error) <= settings.targetError) high = last;
-      else low = last + 1;
-    }
-    if (last != low) compress(rungs[low]);
-    report.missedTarget = !(worstFraction(report.error) <= settings.targetError);
+    const auto found = fewestBytes(rungs, settings.targetError, [&](double bytes) {
+      compress(bytes);
+      return worstFraction(report.error);
+    });
+    if (!found.isLast) compress(found.bytes);
+    report.missedTarget = !(found.error <= settings.targetError);
   } else {
     compress(mostBytes(settings));
   }

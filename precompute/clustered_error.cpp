@@ -17,7 +17,7 @@
 namespace chiaro {
 namespace {
 
-constexpr std::size_t kVertices = 256;
+constexpr std::size_t kVertices = 256, kVerticesOfTarget = 768;  // a promise is kept elsewhere, too, where it is made of many
 constexpr std::size_t kAxes = 16;
 constexpr std::uint32_t kRays = 512;
 constexpr std::size_t kBlock = 16;
@@ -37,7 +37,7 @@ ClusteredTruth::ClusteredTruth(const RayScene& rays, const std::vector<Viewpoint
                                const BakeSettings& settings, const std::function<void(double)>& progress)
     : viewpoints_(viewpoints), rows_(rows), threads_(settings.threads) {
   std::mt19937 random(settings.seed + 1);
-  const auto count = std::min(kVertices, viewpoints.size());
+  const auto count = std::min(settings.targetError > 0.0 ? kVerticesOfTarget : kVertices, viewpoints.size());
   for (std::size_t i = 0; i < count; ++i)
     vertices_.push_back(static_cast<std::uint32_t>(uniform(random) * static_cast<double>(viewpoints.size())));
   exact_.resize(count * rows.size());

@@ -15,7 +15,7 @@
 
 namespace chiaro {
 
-/// The figures of BakeReport::error (docs/programs.md), from 256 random vertices that are traced again, once for however many transfers:
+/// The figures of BakeReport::error (docs/programs.md), from 256 random vertices (768 with a target error) that are traced again, once for however many transfers:
 ///  * ssdf_rms_radians, ssdf_sign_share: the stored SSDF against the traced one (clamped alike), above the horizon.
 ///  * level_rms_<sharpness>: stored against traced prefiltered visibility, above the horizon.
 ///  * visible_fraction_mean_abs_<lambda>: of a normalised SG lobe about a random axis above the horizon (16 each), what a renderer

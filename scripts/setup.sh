@@ -8,6 +8,7 @@ packages="
   libembree-dev libeigen3-dev libopenblas-pthread-dev libopenmesh-dev libceres-dev
   libglm-dev libcli11-dev nlohmann-json3-dev libxxhash-dev liblzma-dev
   libtinygltf-dev libpng-dev libturbojpeg0-dev libopenexr-dev
+  libjs-chart.js
   libepoxy-dev libegl-dev libgl-dev libglfw3-dev libimgui-dev
   libegl1 libegl-mesa0 libgl1-mesa-dri
   libgtest-dev libgmock-dev libbenchmark-dev

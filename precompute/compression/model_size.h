@@ -24,7 +24,7 @@ inline ModelSize modelSize(double bytesPerVertex, std::size_t vertices, int fine
 }
 
 /// What a target error tries, and after these all terms of more functions.
-inline constexpr double kByteRungs[] = {16, 24, 36, 52, 72, 104, 152, 224, 328, 480};
+inline constexpr double kByteRungs[] = {4, 6, 10, 16, 24, 36, 52, 72, 104, 152, 224, 328, 480};
 inline constexpr int kMostNeeded = 640;  // functions: the built-in scene's rows are within .01 of what was traced
 
 }  // namespace chiaro

@@ -40,7 +40,7 @@ void RowStore::put(std::size_t block, std::uint64_t rays, const std::int16_t* va
   std::vector<std::byte> content(valuesBehind(block) + 2 * count);
   std::memcpy(content.data(), &rays, sizeof rays);
   if (sideBytes_ != 0) std::memcpy(content.data() + sizeof rays, side, rowsOf(block) * sideBytes_);
-  std::memcpy(content.data() + valuesBehind(block), values, 2 * count);
+  if (count != 0) std::memcpy(content.data() + valuesBehind(block), values, 2 * count);
   place_.journal->append(place_.kind, block, content);
 }
 

@@ -19,9 +19,10 @@
 #include "assets/transfer/transfer.h"
 #include "assets/transfer/transfer_format.h"
 #include "precompute/bake.h"
-#include "precompute/compression/blas_name.h"
 #include "precompute/elapsed.h"
+#include "precompute/journal/program_identity.h"
 #include "precompute/memory_budget.h"
+#include "precompute/preset.h"
 #include "precompute/program/bake_json.h"
 #include "precompute/program/material_program.h"
 
@@ -34,6 +35,9 @@ constexpr const char* kExamples = R"(Examples:
   chiaro-precompute builtin:ornament -o ornament.glb
   chiaro-precompute bunny.ply -o bunny.glb --terms 96 --json bake.json
       more terms: sharper shadows of small lights, more bytes a vertex; bake.json says how far off each is
+  chiaro-precompute bunny.ply -o bunny.glb --preset preview
+  chiaro-precompute bunny.ply -o bunny.glb --target-error 0.02
+      as few bytes as keep that error
   chiaro-precompute room.gltf -o room.glb --resolution 128 --threads 8
   chiaro-precompute room.gltf -o room.glb --refine 0.05
       more triangles where walls and floors have too few for their shadows
@@ -54,6 +58,7 @@ struct Options {
   std::filesystem::path output;
   std::filesystem::path json;
   std::vector<std::string> materials;  ///< NAME=FILE
+  std::string preset;                  ///< name; empty: none
   BakeSettings settings;
   double creaseAngleDegrees = 60.0;
   double memoryLimitMib = 0.0;
@@ -74,6 +79,7 @@ void declare(CLI::App& app, Options& options) {
       ->type_name("NAME=FILE.gltf")
       ->allow_extra_args(false);
 
+  app.add_option("--preset", options.preset, "preview, balanced or quality: --resolution and --bytes at once; what is given beside it counts")->type_name("NAME");
   const std::map<std::string, Compression> forms{{"pca", Compression::pca}, {"clustered", Compression::clustered}, {"joint", Compression::joint}};
   app.add_option("--compression", settings.compression, "pca (global), clustered, or joint (clustered, with prefiltered visibility)")
       ->transform(CLI::CheckedTransformer(forms, CLI::ignore_case))->option_text("pca|clustered|joint");
@@ -108,6 +114,22 @@ void declare(CLI::App& app, Options& options) {
   app.add_flag("--fresh", options.fresh, "Do not go on from what a bake of the same output left when it was stopped");
   auto* quiet = app.add_flag("-q,--quiet", options.quiet, "Print nothing but errors");
   app.add_flag("-v,--verbose", options.verbose, "Print warnings and every figure")->excludes(quiet);
+}
+
+/// What the preset says and the command line does not.
+void applyPreset(const CLI::App& app, Options& options) {
+  if (options.preset.empty()) return;
+  std::string names;
+  for (const auto& preset : kPresets) {
+    names += (names.empty() ? "" : ", ") + std::string(preset.name);
+    if (preset.name != options.preset) continue;
+    if (options.settings.compression != Compression::joint) throw usageError("--preset", "is of the joint form", "leave --compression out, or the preset");
+    if (options.settings.targetError > 0.0) throw usageError("--preset", "and --target-error both choose the bytes", "give one of them");
+    if (app.count("--resolution") == 0) options.settings.resolution = preset.resolution;
+    if (app.count("--bytes") == 0) options.settings.bytesPerVertex = preset.bytesPerVertex;
+    return;
+  }
+  throw usageError("--preset", "unknown preset \"" + options.preset + "\"", "give one of " + names);
 }
 
 /// Whether a bake wrote this file: it may be baked again in its own place. An artist's own file must not be replaced.
@@ -216,14 +238,6 @@ void replaceMaterials(const Options& options, Scene& scene, const WarningHandler
   for (const std::string& one : options.materials) replaceMaterial(scene, one.substr(0, one.find('=')), one.substr(one.find('=') + 1), warn);
 }
 
-/// A bake that goes on must be the same program's: its version, and its very bytes where the system shows them.
-std::string identity() {
-  std::string text = "chiaro-precompute " CHIARO_VERSION ", " + blasName();
-  std::error_code error;
-  if (std::filesystem::exists("/proc/self/exe", error)) text += " " + checksumOf(readFile("/proc/self/exe"));
-  return text;
-}
-
 /// bake() knows no file names; the user knows nothing else.
 template <typename Work>
 auto naming(const std::string& file, const Work& work) {
@@ -242,6 +256,7 @@ ExitCode precompute(int argc, char** argv) {
   Options options;
   declare(app, options);
   if (!readCommandLine(app, argc, argv)) return ExitCode::done;
+  applyPreset(app, options);
   finish(options);
   catchInterrupts();
 
@@ -261,7 +276,7 @@ ExitCode precompute(int argc, char** argv) {
   BakeReport report;
   const BakeStorage storage{.journal = partialOf(options.output),
                             .fresh = options.fresh,
-                            .program = identity(),
+                            .program = programIdentity("chiaro-precompute " CHIARO_VERSION),  // a bake that goes on must be the same program's
                             .memoryLimit = static_cast<std::size_t>(std::ceil(options.memoryLimitMib * 1048576.0)),
                             .notice = [&](const std::string& line) {
                               bar.clear();

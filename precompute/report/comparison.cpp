@@ -16,6 +16,9 @@
 namespace chiaro {
 namespace {
 
+constexpr std::size_t kWorstPixels = 6;
+constexpr int kWorstApart = 16;  // pixels
+
 double secondsNow() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 struct PreparedLight {
@@ -61,8 +64,8 @@ std::string fileName(const std::string& environment, std::optional<float> roughn
   return unique;
 }
 
-void drawRuntime(const BakedScene& baked, const PreparedLight& light, const Camera& camera, const ReportOptions& options,
-                 Comparison& comparison) {
+ImageRgba drawRuntime(const BakedScene& baked, const PreparedLight& light, const Camera& camera, const ReportOptions& options,
+                      const DisplaySettings& display, double& seconds) {
   const double start = secondsNow();
   Renderer renderer(baked);
   renderer.setEnvironment(light.prefiltered);
@@ -70,14 +73,15 @@ void drawRuntime(const BakedScene& baked, const PreparedLight& light, const Came
   settings.width = options.size.x;
   settings.height = options.size.y;
   settings.supersample = options.supersample;
-  settings.exposure = comparison.display.exposure;
-  settings.toneMap = comparison.display.toneMap;
+  settings.exposure = display.exposure;
+  settings.toneMap = display.toneMap;
   settings.shadows = options.shadows;
   settings.energyCompensation = options.energyCompensation;
   settings.lobes = options.lobes;
   renderer.render(camera, settings);
-  comparison.runtime = renderer.readRadiance();
-  comparison.runtimeSeconds = secondsNow() - start;
+  auto picture = renderer.readRadiance();
+  seconds = secondsNow() - start;
+  return picture;
 }
 
 /// Two references of half the samples each, so that the noise is known.
@@ -107,7 +111,12 @@ ReferenceHalves drawReference(const Scene& scene, const Environment& environment
 
 }  // namespace
 
-Comparisons compareAll(const BakedScene& baked, const ReportOptions& options, const ProgressHandler& progress) {
+double judgedError(const Comparison& one, const ReportOptions& options) {
+  // Two bakes hold no noise, and then the bound of rmseWithoutNoise is only looser.
+  return options.other.empty() ? one.difference.rmseWithoutNoise : one.difference.rmse;
+}
+
+Comparisons compareAll(const BakedScene& baked, const BakedScene* other, const ReportOptions& options, const ProgressHandler& progress) {
   Comparisons result;
   const float aspect = static_cast<float>(options.size.x) / static_cast<float>(options.size.y);
   result.camera = resolveCamera(options.camera, baked.scene, aspect);
@@ -129,14 +138,21 @@ Comparisons compareAll(const BakedScene& baked, const ReportOptions& options, co
       comparison.display = {options.exposure.value_or(light.autoExposure), options.toneMap};
       comparison.lightCount = light.prefiltered.lights.size();
       comparison.prepareSeconds = light.seconds;
-      const BakedScene changed = withMaterials(baked, {roughness, options.metallic, options.model});
-      drawRuntime(changed, light, result.camera, options, comparison);
+      const MaterialOverride materials{roughness, options.metallic, options.model};
+      const BakedScene changed = withMaterials(baked, materials);
+      comparison.runtime = drawRuntime(changed, light, result.camera, options, comparison.display, comparison.runtimeSeconds);
+      ReferenceHalves halves;
+      if (other != nullptr) {
+        halves.first = drawRuntime(withMaterials(*other, materials), light, result.camera, options, comparison.display, comparison.referenceSeconds);
+        halves.second = halves.first;
+      } else {
+        halves = drawReference(changed.scene, light.environment, result.camera, options, progress, comparison);
+      }
       context.debugLog().requireClean("the rendering");
-      const ReferenceHalves halves =
-          drawReference(changed.scene, light.environment, result.camera, options, progress, comparison);
       comparison.reference = meanOf(halves);
       comparison.difference = comparePictures(comparison.runtime, halves, comparison.display);
       comparison.perceptual = comparePerceptually(comparison.runtime, comparison.reference, comparison.display, options.threads);
+      comparison.worstPixels = worstPixels(comparison.runtime, comparison.reference, comparison.display, kWorstPixels, kWorstApart);
       result.cases.push_back(std::move(comparison));
     }
   }

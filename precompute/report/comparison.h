@@ -1,5 +1,5 @@
 #pragma once
-/// One scene under one light with one material setting, drawn by the runtime and by the reference.
+/// One scene under one light with one material setting, drawn by the runtime and by the reference, or by the runtime from two bakes.
 
 #include <cstdint>
 #include <optional>
@@ -11,6 +11,7 @@
 #include "precompute/bake.h"
 #include "precompute/report/metrics.h"
 #include "precompute/report/metrics/perceptual.h"
+#include "precompute/report/metrics/worst_pixels.h"
 #include "precompute/report/report_options.h"
 
 namespace chiaro {
@@ -25,6 +26,7 @@ struct Comparison {
   ImageRgba reference;
   PictureDifference difference;
   PerceptualDifference perceptual;
+  std::vector<WorstPixel> worstPixels;
   std::uint64_t rays = 0;
   double prepareSeconds = 0.0;  ///< environment prefiltering
   double runtimeSeconds = 0.0;  ///< upload and one frame, wall clock, until the pixels are back
@@ -37,7 +39,11 @@ struct Comparisons {
   std::string glRenderer, glVersion;
 };
 
-/// Makes a headless OpenGL context and compares every environment with every roughness. Throws Error.
-Comparisons compareAll(const BakedScene& baked, const ReportOptions& options, const ProgressHandler& progress);
+/// What --fail-over judges: RMSE without the reference's noise. NaN where a pixel is undefined.
+double judgedError(const Comparison& one, const ReportOptions& options);
+
+/// Makes a headless OpenGL context and compares every environment with every roughness. other: its pictures, from the same camera and under the same light, are
+/// the reference; null: brute force is. Throws Error.
+Comparisons compareAll(const BakedScene& baked, const BakedScene* other, const ReportOptions& options, const ProgressHandler& progress);
 
 }  // namespace chiaro

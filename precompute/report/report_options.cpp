@@ -6,9 +6,9 @@
 
 #include "assets/builtin/environment.h"
 #include "assets/error.h"
-#include "assets/file.h"
 #include "assets/scene/light_spec.h"
 #include "assets/scene/material_override.h"
+#include "precompute/report/report_folder.h"
 
 namespace chiaro {
 namespace {
@@ -45,19 +45,6 @@ std::string builtinNames() {
   return text;
 }
 
-Error folderError(const std::filesystem::path& folder, const std::string& reason) {
-  return outputError(folder.string(), "the folder cannot be made: " + reason, "give another one with -o");
-}
-
-/// Makes nothing: whatever else is wrong with the command leaves no empty folder behind.
-void requireFolderCanBeMade(const std::filesystem::path& folder) {
-  std::error_code ignored;
-  std::filesystem::path standing = std::filesystem::absolute(folder, ignored).lexically_normal();
-  while (!std::filesystem::exists(standing, ignored) && standing.has_relative_path()) standing = standing.parent_path();
-  if (!std::filesystem::is_directory(standing, ignored)) throw folderError(folder, standing.string() + " is not a folder");
-  requireWritable(standing / "index.html");
-}
-
 void requireShare(float value, const char* option) {
   if (!(value >= 0.0f && value <= 1.0f)) throw usageError(option, "must lie between 0 and 1", "give a number such as 0.4");
 }
@@ -77,6 +64,7 @@ glm::ivec2 sizeFrom(const std::string& text) {
 
 void declareReportOptions(CLI::App& app, ReportOptions& options, ReportOptionTexts& texts) {
   app.add_option("baked", texts.scene, "Baked scene (.glb) that chiaro-precompute wrote")->required()->type_name("FILE");
+  app.add_option("other", texts.other, "Another baked scene (.glb), whose pictures take the place of the brute-force reference")->type_name("OTHER");
   app.add_option("-o,--output", texts.output, "Folder for index.html, report.json, report.csv and the pictures")
       ->required()
       ->type_name("DIR");
@@ -119,6 +107,7 @@ void declareReportOptions(CLI::App& app, ReportOptions& options, ReportOptionTex
       ->type_name("NAME")
       ->capture_default_str();
   app.add_option("--fail-under", options.failUnder, "Exit with 5 when a comparison is under this PSNR")->type_name("DB");
+  app.add_option("--fail-over", options.failOver, "Exit with 5 when the RMSE of a comparison, without the reference's noise, is over this")->type_name("X");
   app.add_option("--threads", options.threads, "CPU threads, 0 is all; never changes the figures")
       ->type_name("N")
       ->capture_default_str();
@@ -127,6 +116,7 @@ void declareReportOptions(CLI::App& app, ReportOptions& options, ReportOptionTex
 
 void finishReportOptions(ReportOptions& options, const ReportOptionTexts& texts) {
   options.scene = texts.scene;
+  options.other = texts.other;
   options.output = texts.output;
   if (options.environments.empty()) options.environments = {"sunny", "overcast", "windows"};
   options.size = sizeFrom(texts.size);
@@ -146,16 +136,12 @@ void finishReportOptions(ReportOptions& options, const ReportOptionTexts& texts)
     throw usageError("--samples", "must lie between 2 and " + std::to_string(kMostSamples), "give a number such as 256");
   if (options.failUnder && !std::isfinite(*options.failUnder))
     throw usageError("--fail-under", "is not a number", "give decibels such as 30");
+  if (options.failOver && !(*options.failOver >= 0.0 && std::isfinite(*options.failOver)))
+    throw usageError("--fail-over", "is not a number from 0 on", "give an RMSE such as 0.01");
   if (options.threads < 0 || options.threads > 1024)
     throw usageError("--threads", "must lie between 0 and 1024", "give 0 for all cores");
   for (const std::string& name : options.environments) requireEnvironment(name);
   requireFolderCanBeMade(options.output);
-}
-
-void makeReportFolder(const ReportOptions& options) {
-  std::error_code failure;
-  std::filesystem::create_directories(options.output, failure);
-  if (failure) throw folderError(options.output, failure.message());
 }
 
 }  // namespace chiaro

@@ -22,6 +22,7 @@ enum class ErrorMapKind { difference, flip, hdrFlip };
 
 struct ReportOptions {
   std::filesystem::path scene;            ///< a baked .glb
+  std::filesystem::path other;            ///< a baked .glb that takes the place of the reference; empty: none
   std::filesystem::path output;           ///< a folder, made where missing
   std::vector<std::string> environments;  ///< names or files; never empty after finishReportOptions()
   std::vector<float> roughnesses;         ///< perceptual, of every material; empty: the scene's own
@@ -39,13 +40,14 @@ struct ReportOptions {
   int lobes = 0;                     ///< RenderSettings::lobes
   ErrorMapKind errorMap = ErrorMapKind::difference;
   std::optional<double> failUnder;  ///< dB
+  std::optional<double> failOver;   ///< RMSE
   int threads = 0;
   bool quiet = false;
 };
 
 /// The option values as text, before finishReportOptions() turns them into the above.
 struct ReportOptionTexts {
-  std::string scene, output;
+  std::string scene, other, output;
   std::string size = "480x300";
   std::string camera = "auto";
   std::string exposure = "auto";
@@ -65,7 +67,5 @@ void declareReportOptions(CLI::App& app, ReportOptions& options, ReportOptionTex
 /// Checks and converts what parse() left, and that the output folder can be made. Makes nothing. Throws Error (usage,
 /// unreadableInput, unwritableOutput).
 void finishReportOptions(ReportOptions& options, const ReportOptionTexts& texts);
-/// Makes the output folder. Throws Error (unwritableOutput).
-void makeReportFolder(const ReportOptions& options);
 
 }  // namespace chiaro

@@ -6,26 +6,12 @@
 #include "precompute/report/base64.h"
 #include "precompute/figure/html_text.h"
 #include "precompute/report/error_map.h"
+#include "precompute/report/page/page.h"
 
 namespace chiaro {
 namespace {
 
-constexpr const char* kStyle = R"(
-:root{color-scheme:light dark;--ground:#fff;--text:#1c1c1c;--soft:#666;--line:#ddd;--bad:#b3261e}
-@media (prefers-color-scheme:dark){:root{--ground:#141414;--text:#e6e6e6;--soft:#a0a0a0;--line:#383838;--bad:#ff8a80}}
-body{margin:0 auto;padding:1rem;max-width:100rem;background:var(--ground);color:var(--text);font:16px/1.5 system-ui,sans-serif}
-h1{font-size:1.4rem;margin:.5rem 0}h2{font-size:1.1rem;margin:2rem 0 .5rem}
-p,dl{max-width:46rem}.soft,figcaption{color:var(--soft);font-size:.9rem}.bad{color:var(--bad);font-weight:600}
-.wide{overflow-x:auto}table{border-collapse:collapse;font-variant-numeric:tabular-nums}
-th,td{padding:.3rem .7rem;border-bottom:1px solid var(--line);text-align:right;white-space:nowrap}
-th:first-child,td:first-child{text-align:left}
-.row{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(100%,18rem),1fr));gap:.7rem}
-figure{margin:0}img{width:100%;height:auto;display:block;background:#303030}
-.scale{height:.8rem;max-width:24rem;background:linear-gradient(90deg,#0ff,#00f,#000,#f00,#ff0)}
-.magma{height:.8rem;max-width:24rem;background:linear-gradient(90deg,#000004,#51127c,#b73779,#fc8961,#fcfdbf)}
-.ends{display:flex;justify-content:space-between;max-width:24rem}
-dt{float:left;clear:left;min-width:11rem;color:var(--soft)}dd{margin:0 0 0 11.5rem}
-)";
+constexpr int kCropSide = 25;  // pixels about a worst one
 
 std::string formatted(const char* format, double value) {
   if (!std::isfinite(value)) return "undefined";
@@ -39,44 +25,81 @@ std::string titleOf(const Comparison& one) {
          (one.roughness ? ", roughness " + formatted("%.3g", static_cast<double>(*one.roughness)) : "");
 }
 
-std::string picture(const std::vector<std::uint8_t>& png, const std::string& caption, const Comparison& one) {
-  return "<figure><img alt=\"" + caption + ", " + titleOf(one) + "\" width=\"" + std::to_string(one.reference.width) +
-         "\" height=\"" + std::to_string(one.reference.height) + "\" src=\"data:image/png;base64," + base64(png) +
-         "\"><figcaption>" + caption + "</figcaption></figure>\n";
+std::string image(const std::vector<std::uint8_t>& png, const std::string& alt, const Comparison& one, const std::string& look = "") {
+  return "<img alt=\"" + alt + ", " + titleOf(one) + "\" width=\"" + std::to_string(one.reference.width) + "\" height=\"" + std::to_string(one.reference.height) +
+         "\"" + (look.empty() ? "" : " class=\"" + look + "\"") + " src=\"data:image/png;base64," + base64(png) + "\">";
+}
+
+/// What the runtime is compared with, for people.
+std::string referenceName(const ReportOptions& options) { return options.other.empty() ? "reference" : htmlText(options.other.filename().string()); }
+
+/// The runtime's picture left of the slider, the reference right of it.
+std::string slidingPictures(const CasePictures& pictures, const Comparison& one, const ReportOptions& options) {
+  const std::string name = options.other.empty() ? "runtime" : htmlText(options.scene.filename().string()), other = referenceName(options);
+  return "<figure><div class=\"compare\">" + image(pictures.runtime, name, one) + image(pictures.reference, other, one, "over") +
+         "<input type=\"range\" min=\"0\" max=\"100\" value=\"50\" autocomplete=\"off\" aria-label=\"how much of the picture is " + name + "\"></div><figcaption>" + name +
+         " left, " + other + " right; the slider moves the line</figcaption></figure>\n";
+}
+
+/// Rings about the worst pixels, numbered as in their table.
+std::string markedErrorMap(const CasePictures& pictures, const Comparison& one) {
+  std::string html = "<figure><div class=\"marked\">" + image(pictures.error, "error", one);
+  int number = 0;
+  for (const auto& pixel : one.worstPixels) {
+    const auto percent = [](int at, int of) { return formatted("%.2f%%", 100.0 * (at + 0.5) / of); };
+    html += "<span style=\"left:" + percent(pixel.x, one.reference.width) + ";top:" + percent(pixel.y, one.reference.height) + "\">" + std::to_string(++number) + "</span>";
+  }
+  return html + "</div><figcaption>error; the worst pixels are numbered</figcaption></figure>\n";
+}
+
+/// kCropSide pixels a side about (x, y), as shown; black beyond the border.
+std::vector<std::uint8_t> crop(const ImageRgba& picture, const WorstPixel& about, const DisplaySettings& display) {
+  ImageRgba part{.width = kCropSide, .height = kCropSide, .texels = std::vector<glm::vec4>(kCropSide * kCropSide, glm::vec4(0.0f))};
+  for (int y = 0; y < kCropSide; ++y)
+    for (int x = 0; x < kCropSide; ++x) {
+      const int fromX = about.x + x - kCropSide / 2, fromY = about.y + y - kCropSide / 2;
+      if (fromX >= 0 && fromY >= 0 && fromX < picture.width && fromY < picture.height) part.at(x, y) = picture.at(fromX, fromY);
+    }
+  return encodePng(displayImage(part, display.exposure, display.toneMap));
+}
+
+std::string worstTable(const Comparison& one, const ReportOptions& options) {
+  if (one.worstPixels.empty()) return "";
+  std::vector<TableRow> rows;
+  int number = 0;
+  for (const auto& pixel : one.worstPixels) {
+    const auto shown = [&](const ImageRgba& picture, const char* what) {
+      return "<img class=\"crop\" alt=\"" + std::string(what) + " about pixel " + std::to_string(pixel.x) + ", " + std::to_string(pixel.y) +
+             "\" src=\"data:image/png;base64," + base64(crop(picture, pixel, one.display)) + "\">";
+    };
+    ++number;
+    rows.push_back({.cells = {numberCell("%.0f", number), numberCell("%.0f", pixel.x), numberCell("%.0f", pixel.y), numberCell("%.4f", pixel.difference),
+                              numberCell("%+.4f", pixel.bias), {.html = shown(one.runtime, "runtime") + " " + shown(one.reference, "reference"), .value = pixel.difference}}});
+  }
+  return sortableTable("worst_" + one.name, {"worst pixel", "x", "y", "RMSE", "bias", "runtime, " + (options.other.empty() ? std::string("reference") : options.other.filename().string())}, rows);
 }
 
 bool fails(const Comparison& one, const ReportOptions& options) {
   const bool defined = one.difference.undefinedPixels == 0;
-  return !defined || (options.failUnder && !(one.difference.psnr >= *options.failUnder));
+  return !defined || (options.failUnder && !(one.difference.psnr >= *options.failUnder)) ||
+         (options.failOver && !(judgedError(one, options) <= *options.failOver));
 }
 
 std::string table(const ReportOptions& options, const Comparisons& comparisons) {
-  std::string html =
-      "<div class=\"wide\"><table><tr><th>light, material</th><th>PSNR dB</th><th>RMSE</th><th>bias</th><th>worst</th>"
-      "<th>reference noise</th><th>PSNR without noise</th><th>SSIM</th><th>FLIP</th><th>HDR "
-      "FLIP</th><th>pixels</th><th>undefined</th><th>outline differs</th></tr>\n";
+  std::vector<TableRow> rows;
   for (const Comparison& one : comparisons.cases) {
     const PictureDifference& d = one.difference;
-    const auto cell = [&](const std::string& text, bool bad = false) {
-      html += (bad ? "<td class=\"bad\">" : "<td>") + text + "</td>";
-    };
-    html += "<tr>";
-    cell("<a href=\"#" + one.name + "\">" + titleOf(one) + "</a>");
-    cell(formatted("%.2f", d.psnr), fails(one, options));
-    cell(formatted("%.4f", d.rmse));
-    cell(formatted("%+.4f", d.bias));
-    cell(formatted("%.3f", d.worst));
-    cell(formatted("%.4f", d.noise));
-    cell(formatted("%.2f", psnrOf(d.rmseWithoutNoise)));
-    cell(formatted("%.4f", one.perceptual.ssim));
-    cell(formatted("%.4f", one.perceptual.flip));
-    cell(formatted("%.4f", one.perceptual.hdrFlip));
-    cell(std::to_string(d.objectPixels));
-    cell(std::to_string(d.undefinedPixels), d.undefinedPixels > 0);
-    cell(std::to_string(d.coverageMismatches));
-    html += "</tr>\n";
+    Cell title = textCell("");
+    title.html = "<a href=\"#" + one.name + "\">" + titleOf(one) + "</a>";
+    rows.push_back({.cells = {title, numberCell("%.2f", d.psnr, fails(one, options)), numberCell("%.4f", d.rmse), numberCell("%+.4f", d.bias), numberCell("%.3f", d.worst),
+                              numberCell("%.4f", d.noise), numberCell("%.2f", psnrOf(d.rmseWithoutNoise)), numberCell("%.4f", one.perceptual.ssim),
+                              numberCell("%.4f", one.perceptual.flip), numberCell("%.4f", one.perceptual.hdrFlip), numberCell("%.0f", static_cast<double>(d.objectPixels)),
+                              numberCell("%.0f", static_cast<double>(d.undefinedPixels), d.undefinedPixels > 0), numberCell("%.0f", static_cast<double>(d.coverageMismatches))}});
   }
-  return html + "</table></div>\n";
+  return sortableTable("cases",
+                       {"light, material", "PSNR dB", "RMSE", "bias", "worst", "reference noise", "PSNR without noise", "SSIM", "FLIP", "HDR FLIP", "pixels", "undefined",
+                        "outline differs"},
+                       rows);
 }
 
 std::string settings(const ReportFacts& facts, const ReportOptions& options, const Comparisons& comparisons) {
@@ -91,7 +114,7 @@ std::string settings(const ReportFacts& facts, const ReportOptions& options, con
                         " bytes a vertex");
   entry("pictures",
         std::to_string(options.size.x) + " x " + std::to_string(options.size.y) + ", one ray a pixel through its centre");
-  entry("reference", std::to_string(options.samples) + " sample pairs a pixel, in two halves");
+  entry("reference", options.other.empty() ? std::to_string(options.samples) + " sample pairs a pixel, in two halves" : options.other.filename().string());
   entry("shadows", options.shadows ? "yes" : "no");
   if (options.metallic) entry("metalness", formatted("%.3g", static_cast<double>(*options.metallic)));
   entry("tone map", facts.toneMap);
@@ -102,7 +125,7 @@ std::string settings(const ReportFacts& facts, const ReportOptions& options, con
   return html + "</dl>\n";
 }
 
-std::string errorMapLegend(ErrorMapKind kind) {
+std::string errorMapLegend(ErrorMapKind kind, bool pair) {
   if (kind != ErrorMapKind::difference)
     return std::string("<h2>Error maps</h2><p class=\"soft\">") +
            (kind == ErrorMapKind::flip ? "FLIP of the pictures as shown" : "HDR FLIP, the worst of all exposures") +
@@ -111,7 +134,7 @@ std::string errorMapLegend(ErrorMapKind kind) {
   const std::string range = formatted("%.2g", kErrorMapRange);
   std::string html;
   html +=
-      "<h2>Error maps</h2><p class=\"soft\">Runtime minus reference, mean of the channels. Black is equal, magenta undefined, "
+      "<h2>Error maps</h2><p class=\"soft\">" + std::string(pair ? "The first bake minus the other" : "Runtime minus reference") + ", mean of the channels. Black is equal, magenta undefined, "
       "grey no object.</p>\n";
   html += "<div class=\"scale\"></div><div class=\"ends soft\"><span>&minus;" + range + " too dark</span><span>0</span><span>+" +
           range + " too bright</span></div>\n";
@@ -122,32 +145,25 @@ std::string errorMapLegend(ErrorMapKind kind) {
 
 std::string reportPage(const ReportFacts& facts, const ReportOptions& options, const Comparisons& comparisons,
                        const std::vector<CasePictures>& pictures) {
-  const std::string scene = htmlText(options.scene.filename().string());
+  const bool pair = !options.other.empty();
   std::string html =
-      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
-      "content=\"width=device-width,initial-scale=1\">\n<title>" +
-      scene + " against its reference</title><style>" + kStyle + "</style></head><body>\n";
-  html += "<h1>" + scene + " against its reference</h1>\n";
-  html +=
-      "<p>Each picture of the runtime beside a brute-force one of the same scene, camera, light and exposure: direct light, "
-      "traced, no spherical "
-      "Gaussian and no baked transfer in it. Figures are of tone-mapped, display-encoded colours from 0 to 1, over the pixels "
-      "that show an object. "
-      "The reference is drawn in two halves with independent noise; how they differ gives the noise, and the PSNR without "
-      "it.</p>\n";
-  html += table(options, comparisons);
-  html += errorMapLegend(options.errorMap);
+      pair ? "<p>Each picture of one bake beside that of another: the same camera, light and exposure."
+           : "<p>Each picture of the runtime beside a brute-force one of the same scene, camera, light and exposure: direct light, traced, no spherical Gaussian and no "
+             "baked transfer in it.";
+  html += " Figures are of tone-mapped, display-encoded colours from 0 to 1, over the pixels that show an object.";
+  if (!pair) html += " The reference is drawn in two halves with independent noise; how they differ gives the noise, and the PSNR without it.";
+  html += "</p>\n" + table(options, comparisons) + errorMapLegend(options.errorMap, pair);
   for (std::size_t i = 0; i < comparisons.cases.size(); ++i) {
     const Comparison& one = comparisons.cases[i];
-    html += "<h2 id=\"" + one.name + "\">" + titleOf(one) + ": " + formatted("%.2f dB", one.difference.psnr) +
-            "</h2>\n<div class=\"row\">\n";
-    html += picture(pictures[i].runtime, "runtime", one) + picture(pictures[i].reference, "reference", one) +
-            picture(pictures[i].error, "error", one);
-    html += "</div>\n<p class=\"soft\">Prefiltering " + formatted("%.2f s", one.prepareSeconds) + ", runtime " +
-            formatted("%.2f s", one.runtimeSeconds) + " with upload, reference " + formatted("%.1f s", one.referenceSeconds) +
-            " for " + formatted("%.1f", static_cast<double>(one.rays) * 1e-6) + " million rays.</p>\n";
+    html += "<h2 id=\"" + one.name + "\">" + titleOf(one) + ": " + formatted("%.2f dB", one.difference.psnr) + "</h2>\n<div class=\"row\">\n";
+    html += slidingPictures(pictures[i], one, options) + markedErrorMap(pictures[i], one) + "</div>\n" + worstTable(one, options);
+    html += "<p class=\"soft\">Prefiltering " + formatted("%.2f s", one.prepareSeconds) + ", runtime " + formatted("%.2f s", one.runtimeSeconds) + " with upload, " +
+            referenceName(options) + " " + formatted("%.1f s", one.referenceSeconds);
+    if (!pair) html += " for " + formatted("%.1f", static_cast<double>(one.rays) * 1e-6) + " million rays";
+    html += ".</p>\n";
   }
-  return html + settings(facts, options, comparisons) + "</body></html>\n";
+  html += settings(facts, options, comparisons);
+  return pageHtml({.title = options.scene.filename().string() + (pair ? " against " + options.other.filename().string() : " against its reference"), .body = html, .data = ""});
 }
 
 }  // namespace chiaro

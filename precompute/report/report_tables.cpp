@@ -1,5 +1,6 @@
 #include "precompute/report/report_tables.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -70,6 +71,9 @@ Json caseJson(const Comparison& one) {
       {"prepare_environment", one.prepareSeconds}, {"runtime", one.runtimeSeconds}, {"reference", one.referenceSeconds}};
   json["pictures"] = {
       {"runtime", one.name + "_runtime.png"}, {"reference", one.name + "_reference.png"}, {"error", one.name + "_error.png"}};
+  json["worst_pixels"] = Json::array();
+  for (const auto& pixel : one.worstPixels)
+    json["worst_pixels"].push_back({{"x", pixel.x}, {"y", pixel.y}, {"rmse", pixel.difference}, {"bias", pixel.bias}});
   return json;
 }
 
@@ -102,11 +106,22 @@ double lowestPsnr(const Comparisons& comparisons) {
   return lowest;
 }
 
+double highestError(const Comparisons& comparisons, const ReportOptions& options) {
+  double highest = 0.0;
+  for (const Comparison& one : comparisons.cases) {
+    const double error = judgedError(one, options);
+    if (std::isnan(error)) return error;
+    highest = std::max(highest, error);
+  }
+  return highest;
+}
+
 std::string reportJson(const ReportFacts& facts, const ReportOptions& options, const Comparisons& comparisons) {
   Json json;
   json["program"] = "chiaro-report";
   json["version"] = facts.version;
   json["scene"] = options.scene.string();
+  json["compared_with"] = options.other.empty() ? Json(nullptr) : Json(options.other.string());
   json["vertices"] = facts.vertices;
   json["triangles"] = facts.triangles;
   json["resolution"] = facts.resolution;
@@ -129,6 +144,8 @@ std::string reportJson(const ReportFacts& facts, const ReportOptions& options, c
   json["error_map"] = errorMapName(options.errorMap);
   json["lowest_psnr_db"] = number(lowestPsnr(comparisons));
   json["fail_under_db"] = options.failUnder ? Json(*options.failUnder) : Json(nullptr);
+  json["highest_rmse"] = number(highestError(comparisons, options));
+  json["fail_over"] = options.failOver ? Json(*options.failOver) : Json(nullptr);
   json["cases"] = Json::array();
   for (const Comparison& one : comparisons.cases) json["cases"].push_back(caseJson(one));
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

@@ -20,6 +20,8 @@ ReportFacts factsOf(const BakedScene& baked, const ReportOptions& options);
 
 /// NaN when a case has undefined pixels.
 double lowestPsnr(const Comparisons& comparisons);
+/// Of judgedError().
+double highestError(const Comparisons& comparisons, const ReportOptions& options);
 
 /// Figures that are not defined are null. Field names: docs/programs.md.
 std::string reportJson(const ReportFacts& facts, const ReportOptions& options, const Comparisons& comparisons);

@@ -25,8 +25,10 @@ FN Real lobeWeight(IN(Vec3) axis1, IN(Real) sharpness1, IN(Vec3) axis2, IN(Real)
 // -log of lobeWeight, which tells lobes apart long after that is 0: (sharpness / 4) |axis1 - axis2|^2 of two as sharp.
 FN Real lobeDistance(IN(Vec3) axis1, IN(Real) sharpness1, IN(Vec3) axis2, IN(Real) sharpness2) {
   SphericalGaussian p = sgProductLog(axis1, sharpness1, axis2, sharpness2);
-  Real own = log(oneMinusExpOver(Real(4.0) * clampSharpness(sharpness1))) + log(oneMinusExpOver(Real(4.0) * clampSharpness(sharpness2)));
-  Real distance = Real(0.5) * own - log(oneMinusExpOver(Real(2.0) * p.sharpness)) - p.amplitude;
+  Real both = oneMinusExpOver(Real(2.0) * p.sharpness);
+  // Of ratios, as the logarithms of all three would cancel.
+  Real ratio = oneMinusExpOver(Real(4.0) * clampSharpness(sharpness1)) / both * (oneMinusExpOver(Real(4.0) * clampSharpness(sharpness2)) / both);
+  Real distance = Real(0.5) * log(ratio) - p.amplitude;
   return distance > Real(0.0) ? distance : (isNotANumber(distance) ? distance : Real(0.0));
 }
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/lobe/parity.h"
+#include "shaders/parity/parity.h"
 
 namespace chiaro::parity {
 

@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "tests/lobe/extreme_models.h"
-#include "tests/lobe/parity.h"
+#include "shaders/parity/parity.h"
 
 namespace chiaro::parity {
 namespace {
@@ -83,7 +83,11 @@ TEST(Compare, SeesWhatIsWrong) {
   while (!(expected[finite] > 0.01)) ++finite;
   const float right = got[finite];
   got[finite] = right * 1.001f;
-  EXPECT_EQ(compare(c, expected, got, "0.1 %").failures, 1u);
+  const Comparison wrong = compare(c, expected, got, "0.1 %");
+  EXPECT_EQ(wrong.failures, 1u);
+  EXPECT_EQ(wrong.worstSample * static_cast<std::size_t>(c.outputCount), finite - finite % static_cast<std::size_t>(c.outputCount));
+  // A relative error of .001 is between .001 2^23 and .001 2^24 steps.
+  EXPECT_TRUE(wrong.worstUlps > 8300.0 && wrong.worstUlps < 16800.0) << wrong.worstUlps;
   got[finite] = std::numeric_limits<float>::quiet_NaN();
   EXPECT_EQ(compare(c, expected, got, "NaN for a number").failures, 1u);
   got[finite] = -std::numeric_limits<float>::infinity();

@@ -96,6 +96,19 @@ TEST(Sg, InnerProductByQuadrature) {
   }
 }
 
+// Long after the weight is 0: a quarter of sharpness times the squared chord.
+TEST(Sg, LobeDistanceGoesOnBeyondTheWeight) {
+  for (const double angle : {0.1, 1.0, 3.0}) {
+    const double chord = 2.0 * std::sin(0.5 * angle);
+    EXPECT_EQ(lobeWeight(kUp, 1e6, at(angle), 1e6), 0.0);
+    // Of that the logarithm of the product's sharpness, less than log(1e6), is not in the formula.
+    EXPECT_NEAR(lobeDistance(kUp, 1e6, at(angle), 1e6), 1e6 * (1.0 - std::sqrt(1.0 - 0.25 * chord * chord)) * 2.0, 15.0);
+    EXPECT_GT(lobeNearness(kUp, 1e6, at(angle), 1e6), 0.0);
+    EXPECT_LT(lobeNearness(kUp, 1e6, at(angle), 1e6), lobeNearness(kUp, 1e6, at(0.5 * angle), 1e6));
+  }
+  EXPECT_EQ(lobeNearness(kUp, 7.0, kUp, 7.0), 1.0);
+}
+
 TEST(Sg, NormalizedInnerProductTable) {
   for (const Pair& p : {Pair{0, 0, 1, 1}, Pair{0, 5, 1, .447193292}, Pair{1, 1, quadrature::kPi, .55144113}, Pair{5, 5, quadrature::kPi, 9.07998597e-4},
                         Pair{10, 10, .3, .807925038}, Pair{10, 40, 0, .8}, Pair{1023, 1023, .05, .527804585}, Pair{1e6, 1e6, 1e-3, .778800884},
@@ -104,6 +117,8 @@ TEST(Sg, NormalizedInnerProductTable) {
     EXPECT_NEAR(sgNormalizedInnerProduct(a, b) / p.value, 1.0, 5e-9);
     EXPECT_EQ(sgNormalizedInnerProduct(a, b), sgNormalizedInnerProduct(b, a));
     EXPECT_NEAR(sgNormalizedInnerProduct(a, a), 1.0, 1e-9);
+    EXPECT_EQ(lobeWeight(a.axis, a.sharpness, b.axis, b.sharpness), sgNormalizedInnerProduct(a, b));
+    EXPECT_NEAR(lobeDistance(a.axis, a.sharpness, b.axis, b.sharpness), -std::log(p.value), 1e-8);
     EXPECT_NEAR(std::abs(sgInnerProduct(a, b)) / (sgNorm(a) * sgNorm(b)) / p.value, 1.0, 5e-9);
   }
 }

@@ -4,11 +4,15 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
+#include <functional>
+#include <limits>
 #include <numbers>
 #include <random>
 
 #include "precompute/compression/encode.h"
+#include "precompute/compression/target_search.h"
 
 namespace chiaro {
 namespace {
@@ -201,6 +205,44 @@ TEST(Encode, RoundingHardlyMatters) {
   EXPECT_EQ(largest, 32767) << "the scale is the largest weight";
   const double rms = std::sqrt(weightedSquare(stored - exact, weights) / (4.0 * std::numbers::pi * kRows));
   EXPECT_LE(rms, 0.002) << "ALGORITHMS 9.8";
+}
+
+TEST(TargetSearch, ComesNearFromBelowOnCurvesOfAnyBend) {
+  const std::vector<double> rungs{4, 16, 52, 104, 224, 480, std::numeric_limits<double>::infinity()};
+  const std::pair<const char*, std::function<double(double)>> curves[] = {
+      {"a power", [](double bytes) { return 0.3 / std::sqrt(bytes); }},
+      {"with a floor", [](double bytes) { return 0.01 + 0.5 / bytes; }},
+      {"steep, then flat", [](double bytes) { return 0.02 * std::exp(-bytes / 40.0) + 0.2 / std::sqrt(bytes); }}};
+  for (const auto& [name, curve] : curves)
+    for (const double target : {0.08, 0.05, 0.03, 0.02}) {
+      SCOPED_TRACE(name + std::string(" ") + std::to_string(target));
+      std::vector<double> asked;
+      const auto found = fewestBytes(rungs, target, [&](double bytes) {
+        asked.push_back(bytes);
+        return curve(bytes);
+      });
+      EXPECT_LE(found.error, target);
+      EXPECT_EQ(found.error, curve(found.bytes));
+      if (curve(rungs.front()) > target) {
+        EXPECT_GE(found.error, 0.93 * target);
+      }
+      EXPECT_EQ(found.isLast, found.bytes == asked.back());
+      EXPECT_LE(asked.size(), 3u + 1u + 3u);
+      std::sort(asked.begin(), asked.end());
+      EXPECT_EQ(std::adjacent_find(asked.begin(), asked.end()), asked.end()) << "nothing is asked twice";
+    }
+}
+
+TEST(TargetSearch, EndsOfTheRungs) {
+  const std::vector<double> rungs{4, 16, std::numeric_limits<double>::infinity()};
+  EXPECT_EQ(fewestBytes(rungs, 0.5, [](double) { return 0.1; }).bytes, 4.0);
+  const auto missed = fewestBytes(rungs, 0.05, [](double) { return 0.1; });
+  EXPECT_TRUE(std::isinf(missed.bytes));
+  EXPECT_EQ(missed.error, 0.1);
+  EXPECT_TRUE(missed.isLast);
+  const auto undefined = fewestBytes(rungs, 0.05, [](double) { return std::nan(""); });
+  EXPECT_TRUE(std::isinf(undefined.bytes));
+  EXPECT_FALSE(undefined.error <= 0.05);
 }
 
 }  // namespace

@@ -77,7 +77,7 @@ TEST(Precompute, WrongUsageIsOneLineAndTwo) {
   expectOneLine(precompute({"builtin:sphere"}), ExitCode::usage, "--output");
   const std::vector<std::pair<std::vector<std::string>, std::string>> cases{
       {{"--resolution", "15"}, "--resolution"}, {{"--resolution", "512"}, "--resolution"}, {{"--resolution", "18"}, "multiple of 4"},
-      {{"--resolution", "many"}, "--resolution"}, {{"--terms", "-1"}, "--terms"}, {{"--clusters", "5000"}, "clusters"}, {{"--weight-bits", "9"}, "weight bits"}, {{"--function-bits", "3"}, "function bits"}, {{"--sample-resolution", "96"}, "sample resolution"}, {{"--least-occluder", "-1"}, "--least-occluder"}, {{"--least-occluder", "nan"}, "--least-occluder"}, {{"--least-occluder", "91"}, "--least-occluder"}, {{"--least-occluder", "1"}, "least occluder"}, {{"--compression", "zip"}, "--compression"},          {{"--terms", "257"}, "--terms"},
+      {{"--resolution", "many"}, "--resolution"}, {{"--terms", "-1"}, "--terms"}, {{"--clusters", "5000"}, "clusters"}, {{"--weight-bits", "9"}, "weight bits"}, {{"--function-bits", "3"}, "function bits"}, {{"--sample-resolution", "96"}, "sample resolution"}, {{"--least-occluder", "-1"}, "--least-occluder"}, {{"--least-occluder", "nan"}, "--least-occluder"}, {{"--least-occluder", "91"}, "--least-occluder"}, {{"--least-occluder", "1"}, "least occluder"}, {{"--compression", "zip"}, "--compression"}, {{"--preset", "best"}, "--preset"}, {{"--preset", "quality", "--compression", "pca"}, "--preset"}, {{"--preset", "quality", "--target-error", "0.02"}, "--preset"},          {{"--terms", "257"}, "--terms"},
       {{"--directions", "9"}, "--directions"},  {{"--directions", "4"}, "--directions"},   {{"--crease-angle-deg", "nan"}, "--crease-angle-deg"},
       {{"--crease-angle-deg", "-1"}, "--crease-angle-deg"}, {{"--threads", "-2"}, "--threads"}, {{"--refine", "1.5"}, "--refine"},
       {{"--refine", "-0.1"}, "--refine"}, {{"--refine", "nan"}, "--refine"}, {{"--refine-vertices", "-1"}, "--refine-vertices"}, {{"--frobnicate"}, "--frobnicate"},
@@ -153,6 +153,24 @@ TEST(Precompute, WritesASceneAndItsFigures) {
   EXPECT_EQ(json.at("input"), "table.obj");
   EXPECT_EQ(json.at("output"), "table.glb");
   EXPECT_TRUE(json.contains("version"));
+}
+
+TEST(Precompute, PresetsAreSettingsByName) {
+  const auto settingsOf = [](const std::vector<std::string>& options) {
+    std::vector<std::string> arguments{"preset.obj", "-o", "preset.glb", "--json", "preset.json", "-q"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    EXPECT_EQ(precompute(arguments).code, 0);
+    std::ifstream file("preset.json");
+    return nlohmann::json::parse(file).at("settings");
+  };
+  std::ofstream("preset.obj") << "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+  const auto preview = settingsOf({"--preset", "preview"});
+  EXPECT_EQ(preview.at("resolution"), 32);
+  EXPECT_EQ(preview.at("bytes_per_vertex"), 36.0);
+  EXPECT_EQ(settingsOf({"--preset", "balanced"}), settingsOf({}));
+  const auto own = settingsOf({"--preset", "quality", "--resolution", "16"});
+  EXPECT_EQ(own.at("resolution"), 16) << "what is given beside it counts";
+  EXPECT_EQ(own.at("bytes_per_vertex"), 300.0);
 }
 
 TEST(Precompute, RefinesAndSaysSo) {

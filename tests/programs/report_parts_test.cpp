@@ -12,6 +12,7 @@
 #include "precompute/report/base64.h"
 #include "precompute/report/error_map.h"
 #include "precompute/report/metrics.h"
+#include "precompute/report/metrics/worst_pixels.h"
 #include "precompute/report/report_page.h"
 #include "precompute/report/report_tables.h"
 
@@ -169,12 +170,35 @@ TEST(Page, EscapesNamesAndNeedsNothingElse) {
   ReportOptions options;
   options.scene = "x<script>.glb";
   const std::string page = reportPage({}, options, comparisons, {{{1}, {2}, {3}}});
-  EXPECT_THAT(page, Not(HasSubstr("<script")));
+  EXPECT_THAT(page, Not(HasSubstr("x<script")));
+  EXPECT_THAT(page, HasSubstr("x&lt;script&gt;.glb"));
   EXPECT_THAT(page, HasSubstr("a&lt;b&gt;&amp;&quot;c&#39;.hdr"));
   EXPECT_THAT(page, Not(HasSubstr("http")));
   EXPECT_THAT(page, HasSubstr("data:image/png;base64,AQ=="));
   EXPECT_THAT(page, HasSubstr("name=\"viewport\""));
   EXPECT_THAT(page, HasSubstr("prefers-color-scheme:dark"));
+}
+
+TEST(WorstPixels, AreApartAndInOrder) {
+  const ImageRgba reference = flat(40, 20, {0.2f, 0.2f, 0.2f, 1.0f});
+  ImageRgba picture = reference;
+  picture.at(10, 5).r += 0.3f;
+  picture.at(12, 6).r += 0.2f;  // near a worse one
+  picture.at(30, 15) -= glm::vec4(0.1f, 0.1f, 0.1f, 0.0f);
+  picture.at(0, 0).r = std::numeric_limits<float>::quiet_NaN();
+  const auto worst = worstPixels(picture, reference, kPlain, 5, 4);
+  ASSERT_EQ(worst.size(), 2u) << "the others do not differ";
+  EXPECT_EQ(std::pair(worst[0].x, worst[0].y), std::pair(10, 5));
+  EXPECT_EQ(std::pair(worst[1].x, worst[1].y), std::pair(30, 15));
+  const double bright = static_cast<double>(displayColor({0.5f, 0.2f, 0.2f}, kPlain.exposure, kPlain.toneMap).r - displayColor({0.2f, 0.2f, 0.2f}, kPlain.exposure, kPlain.toneMap).r);
+  EXPECT_NEAR(worst[0].difference, bright / std::sqrt(3.0), 1e-6);
+  EXPECT_NEAR(worst[0].bias, bright / 3.0, 1e-6);
+  EXPECT_LT(worst[1].bias, 0.0);
+  ASSERT_EQ(worstPixels(picture, reference, kPlain, 5, 1).size(), 3u);
+  EXPECT_EQ(worstPixels(picture, reference, kPlain, 1, 1).size(), 1u);
+  ImageRgba nothing = reference;
+  for (auto& texel : nothing.texels) texel.a = 0.0f;
+  EXPECT_TRUE(worstPixels(picture, nothing, kPlain, 5, 1).empty());
 }
 
 TEST(Tables, UndefinedFiguresAreNullAndEmpty) {

@@ -11,13 +11,16 @@
 #include "assets/error.h"
 #include "assets/file.h"
 #include "assets/image/image.h"
+#include "assets/transfer/transfer.h"
 #include "runtime/gl/context.h"
+#include "tests/programs/browser.h"
 #include "tests/programs/view_support.h"
 
 namespace chiaro {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 using testing::StartsWith;
 
 const std::string kScene = "report_scene.glb";
@@ -72,6 +75,8 @@ TEST_F(ReportFiles, UsageErrors) {
       {{kScene, "-o", "r", "--tone-map", "film"}, "--tone-map: unknown tone map \"film\""},
       {{kScene, "-o", "r", "--error-map", "heat"}, "--error-map: unknown error map \"heat\""},
       {{kScene, "-o", "r", "--fail-under", "nan"}, "--fail-under"},
+      {{kScene, "-o", "r", "--fail-over", "-1"}, "--fail-over"},
+      {{kScene, "-o", "r", "--fail-over", "nan"}, "--fail-over"},
       {{kScene, "-o", "r", "--threads", "-1"}, "--threads"},
       {{kScene, "-o", "r", "--camera", "eye=1"}, "--camera"},
       {{kScene, "-o", "r", "--no-such-option"}, "--no-such-option"},
@@ -84,6 +89,8 @@ TEST_F(ReportFiles, UsageErrors) {
 
 TEST_F(ReportFiles, UnreadableAndUnwritable) {
   expectFailure(report({"missing.glb", "-o", "r", "-q"}), 3, "missing.glb");
+  EXPECT_FALSE(std::filesystem::exists("r"));
+  expectFailure(report({kScene, "missing.glb", "-o", "r", "-q"}), 3, "missing.glb");
   EXPECT_FALSE(std::filesystem::exists("r"));
   // Before the first picture, which may take long, and before a folder is made.
   expectFailure(report({kScene, "-o", "never", "-e", "sunny", "-e", "tpyo.hdr"}), 3, "tpyo.hdr");
@@ -134,7 +141,10 @@ TEST_F(ReportPictures, WritesEverythingItSays) {
   std::size_t pictures = 0;
   for (std::size_t at = page.find("data:image/png"); at != std::string::npos; at = page.find("data:image/png", at + 1))
     ++pictures;
-  EXPECT_EQ(pictures, 12u);
+  std::size_t crops = 0;
+  for (const auto& one : json["cases"]) crops += 2 * one["worst_pixels"].size();
+  EXPECT_GT(crops, 0u);
+  EXPECT_EQ(pictures, 12u + crops);
 }
 
 TEST_F(ReportPictures, SameFiguresForAnyThreadCount) {
@@ -148,7 +158,56 @@ TEST_F(ReportPictures, LimitDecidesTheExitCode) {
   const Finished strict = report(small("strict", {"--fail-under", "140", "-q"}));
   expectFailure(strict, 5, "under the limit");
   EXPECT_TRUE(std::filesystem::exists("strict/index.html"));  // to look at what failed
-  EXPECT_EQ(report(small("lenient", {"--fail-under", "5", "-q"})).code, 0);
+  EXPECT_EQ(report(small("lenient", {"--fail-under", "5", "--fail-over", "0.2", "-q"})).code, 0);
+}
+
+TEST_F(ReportPictures, RmseDecidesTheExitCode) {
+  expectFailure(report(small("over", {"--fail-over", "0", "-q"})), 5, "over the limit");
+  EXPECT_TRUE(std::filesystem::exists("over/index.html"));
+}
+
+TEST_F(ReportPictures, TwoBakes) {
+  auto same = small("same", {"--fail-over", "0", "-q"});
+  same.insert(same.begin() + 1, kScene);
+  ASSERT_EQ(report(same).code, 0) << "a bake does not differ from itself";
+  EXPECT_EQ(readFile("same/white_runtime.png"), readFile("same/white_reference.png"));
+
+  BakedScene changed = readBakedScene(kScene);
+  for (auto& material : changed.scene.materials) material.baseColorFactor *= glm::vec4(0.5f, 0.5f, 0.5f, 1.0f);
+  writeBakedScene("darker.glb", changed, "report tests");
+  auto other = small("pair", {"--fail-over", "0.001", "-q"});
+  other.insert(other.begin() + 1, "darker.glb");
+  expectFailure(report(other), 5, "over the limit of 0.00100");
+  const auto json = nlohmann::json::parse(textOf("pair/report.json"));
+  EXPECT_EQ(json["compared_with"], "darker.glb");
+  EXPECT_EQ(json["fail_over"], 0.001);
+  EXPECT_EQ(json["highest_rmse"], json["cases"][0]["rmse"]);
+  EXPECT_EQ(json["cases"][0]["reference_noise_rms"], 0.0);
+  EXPECT_EQ(json["cases"][0]["rays_traced"], 0);
+  EXPECT_GT(json["cases"][0]["bias"], 0.01) << "the first of the two is the brighter one";
+}
+
+TEST_F(ReportPictures, PageInABrowser) {
+  if (!chromium()) GTEST_SKIP() << "no chromium: install it, or name it in CHIARO_CHROMIUM";
+  ASSERT_EQ(report(small("page", {"-q", "-e", "overcast"})).code, 0);
+  const std::string dom = documentAfter("page/index.html", R"(
+    const root = document.documentElement.dataset, compare = document.querySelector('.compare'), slider = compare.querySelector('input');
+    const cut = () => getComputedStyle(compare.querySelector('.over')).clipPath;
+    const before = cut();
+    slider.value = 20;
+    slider.dispatchEvent(new Event('input'));
+    root.slider = before.includes('50%') && cut().includes('20%');
+    const images = [...document.images];
+    const column = () => [...document.querySelectorAll('#cases tbody tr')].map(row => Number(row.cells[1].dataset.value));
+    document.querySelectorAll('#cases th button')[1].click();
+    root.sorted = column().length === 2 && column()[0] <= column()[1];
+    root.marks = document.querySelectorAll('.marked span').length === document.querySelectorAll('[id^=worst_] tbody tr').length;
+    root.fits = document.documentElement.scrollWidth <= innerWidth;
+    Promise.all(images.map(image => image.decode())).then(() => { root.drawn = images.length > 6; });
+  )");
+  EXPECT_THAT(dom.substr(0, 1000), Not(HasSubstr("data-error")));
+  for (const char* state : {"data-slider=\"true\"", "data-sorted=\"true\"", "data-marks=\"true\"", "data-fits=\"true\"", "data-drawn=\"true\""})
+    EXPECT_THAT(dom.substr(0, 1000), HasSubstr(state));
 }
 
 TEST_F(ReportPictures, ErrorMapsOfFlip) {

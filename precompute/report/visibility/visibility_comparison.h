@@ -1,15 +1,13 @@
 #pragma once
 /// The visible fraction of SG lobes by every way to store visibility, against traced rays, on counted bytes.
 
-#include <array>
 #include <memory>
 
 #include "precompute/bake.h"
+#include "precompute/report/visibility/lobe_sharpness.h"
 #include "precompute/report/visibility/visibility_method.h"
 
 namespace chiaro {
-
-inline constexpr std::array<double, 7> kLobeSharpness{3, 10, 30, 100, 300, 1000, 3000};
 
 struct VisibilitySettings {
   int vertices = 250;        ///< measured, at random
@@ -21,11 +19,6 @@ struct VisibilitySettings {
   std::uint32_t seed = 0;
   int threads = 0;  ///< never changes the figures
 };
-
-inline constexpr std::size_t kAxes = 16;  ///< random ones above the horizon of each point
-
-/// Mean |error| at each kLobeSharpness.
-using ErrorBySharpness = std::array<double, kLobeSharpness.size()>;
 
 struct MethodError {
   std::string name;

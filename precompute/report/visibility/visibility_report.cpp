@@ -1,21 +1,17 @@
 #include "precompute/report/visibility/visibility_report.h"
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <stdexcept>
 
-#include "assets/builtin/builtin_scene.h"
 #include "assets/file.h"
 #include "assets/program/command_line.h"
 #include "assets/program/interrupt.h"
 #include "assets/program/progress_bar.h"
-#include "assets/scene/load_scene.h"
 #include "assets/transfer/transfer.h"
-#include "assets/transfer/transfer_format.h"
 #include "precompute/bake.h"
-#include "precompute/report/visibility/ground.h"
+#include "precompute/report/prepared_scene.h"
 #include "precompute/report/visibility/transfer_method.h"
 #include "precompute/report/visibility/visibility_options.h"
 #include "precompute/report/visibility/visibility_tables.h"
@@ -33,13 +29,6 @@ constexpr const char* kExamples = R"(Examples:
 
 Bytes are those of weights, indices, means and bases together, divided by the vertices.
 Exit codes: 0 done, 1 failed, 2 wrong usage, 3 unreadable input, 4 unwritable output, 130 interrupted.)";
-
-bool isBaked(const std::string& path) {
-  if (isBuiltinName(path) || std::filesystem::path(path).extension() != ".glb") return false;
-  const auto bytes = readFile(path);
-  const std::string_view name = kTransferExtension;
-  return std::search(bytes.begin(), bytes.end(), name.begin(), name.end()) != bytes.end();
-}
 
 struct Input {
   Scene scene;
@@ -61,7 +50,7 @@ void bakeInto(Input& input, const VisibilityOptions& options, ProgressBar& bar) 
 }
 
 Input load(const std::string& name, const VisibilityOptions& options) {
-  if (isBaked(name)) {
+  if (isBakedFile(name)) {
     if (options.ground) throw usageError("--ground", name + " is baked already", "give the scene that it was baked from");
     if (!options.bake.empty()) throw usageError("--bake", name + " is baked already", "give the scene that it was baked from");
     auto baked = readBakedScene(name);
@@ -69,10 +58,7 @@ Input load(const std::string& name, const VisibilityOptions& options) {
     input.transfers.push_back(std::move(baked.transfer));
     return input;
   }
-  Scene scene = isBuiltinName(name) ? builtinScene(name) : loadScene(name);
-  if (options.ground) addGround(scene);
-  RepairReport repairs;
-  return {.scene = prepareScene(std::move(scene), BakeSettings{}.creaseAngle, repairs), .transfers = {}};
+  return {.scene = loadPreparedScene(name, options.ground), .transfers = {}};
 }
 
 SceneComparison compareScene(const std::string& name, const VisibilityOptions& options, ProgressBar& bar) {
@@ -87,16 +73,13 @@ SceneComparison compareScene(const std::string& name, const VisibilityOptions& o
   SceneComparison result;
   result.scene = name;
   result.ground = options.ground;
-  try {
+  namingScene(name, [&] {
     if (input.transfers.empty()) bakeInto(input, options, bar);
     result.comparison = compareVisibility(input.scene, methods, options.settings, [&](const std::string& stage, double done) {
       throwIfInterrupted();
       bar.update(stage, done);
     });
-  } catch (const Error& error) {
-    if (error.where() != "scene") throw;
-    throw Error(error.code(), name, std::string(error.what()).substr(error.where().size() + 2), "");
-  }
+  });
   bar.clear();
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;

@@ -5,6 +5,8 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "precompute/report/visibility/lobe_truth.h"
+
 namespace chiaro {
 namespace {
 
@@ -69,7 +71,7 @@ std::string visibilityJson(const std::vector<SceneComparison>& scenes, const Vis
   json["settings"] = {{"vertices", settings.vertices},
                       {"points", settings.points},
                       {"rays", settings.rays},
-                      {"axes", kAxes},
+                      {"axes", LobeTruth::kAxes},
                       {"resolution", settings.resolution},
                       {"terms", settings.terms},
                       {"basis_vertices", settings.basisVertices},

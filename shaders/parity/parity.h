@@ -9,11 +9,11 @@
 
 #include "shaders/cpp/dialect_begin.h"
 namespace chiaro::lobe32 {
-#include "tests/lobe/kernels.glsl"
+#include "shaders/parity/kernels.glsl"
 #undef KERNEL
 }  // namespace chiaro::lobe32
 namespace chiaro::lobe64 {
-#include "tests/lobe/kernels.glsl"
+#include "shaders/parity/kernels.glsl"
 #undef KERNEL
 }  // namespace chiaro::lobe64
 #include "shaders/cpp/dialect_end.h"
@@ -59,7 +59,8 @@ struct Comparison {
   std::size_t samples = 0, failures = 0;
   double worst = 0.0, median = 0.0, percentile99 = 0.0;  ///< relative error over the floor, over finite expectations
   std::size_t worstSample = 0;
-  int worstOutput = 0;
+  int worstOutput = 0;               ///< first of its group
+  double worstUlps = 0.0;            ///< the same error in steps of a float of the expected size (or of the floor)
   std::size_t classFailures = 0;     ///< NaN or infinity on one side only
   std::size_t firstClassFailure = 0;
   std::string report;                ///< one line, and the worst case when something failed

@@ -1,10 +1,11 @@
-#include "tests/lobe/parity.h"
+#include "shaders/parity/parity.h"
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <limits>
 #include <sstream>
 
 namespace chiaro::parity {
@@ -17,6 +18,12 @@ std::int64_t ulps(float a, float b) {
     return bits < 0 ? std::int64_t{INT32_MIN} - bits : std::int64_t{bits};
   };
   return std::abs(ordered(a) - ordered(b));
+}
+
+/// From a positive number to the next float.
+double stepAt(double size) {
+  const auto at = static_cast<float>(size);
+  return static_cast<double>(std::nextafter(at, std::numeric_limits<float>::infinity())) - static_cast<double>(at);
 }
 
 std::string describe(const Case& c, const std::vector<double>& expected, const std::vector<float>& got, std::size_t sample, int output) {
@@ -115,6 +122,7 @@ Comparison compare(const Case& c, const std::vector<double>& expected, const std
         result.worst = error;
         result.worstSample = s;
         result.worstOutput = group.first;
+        result.worstUlps = std::sqrt(error2) / stepAt(std::max(std::sqrt(size2), floor));
       }
       errors.push_back(error);
     }

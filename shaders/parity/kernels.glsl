@@ -16,6 +16,7 @@
 #include "shaders/lobe/specular.glsl"
 #include "shaders/lobe/reflectance.glsl"
 #include "shaders/lobe/elongated.glsl"
+#include "shaders/lobe/upsampling.glsl"
 #include "shaders/lobe/display.glsl"
 #endif
 
@@ -48,6 +49,13 @@ KERNEL(sgProduct) {
 }
 KERNEL(sgInnerProduct) { y[0] = sgInnerProduct(lobeAt(x, 0), lobeAt(x, 5)); }
 KERNEL(sgNormalizedInnerProduct) { y[0] = sgNormalizedInnerProduct(lobeAt(x, 0), lobeAt(x, 5)); }
+KERNEL(lobeLikeness) {
+  SphericalGaussian a = lobeAt(x, 0), b = lobeAt(x, 5);
+  y[0] = lobeWeight(a.axis, a.sharpness, b.axis, b.sharpness);
+  y[1] = lobeDistance(a.axis, a.sharpness, b.axis, b.sharpness);
+  y[2] = lobeNearness(a.axis, a.sharpness, b.axis, b.sharpness);
+  y[3] = normalWeight(a.axis, b.axis);
+}
 KERNEL(vmfAmplitude) { y[0] = vmfAmplitude(x.v[0]); }
 KERNEL(vmfMeanCosine) { y[0] = vmfMeanCosine(x.v[0]); }
 KERNEL(oneMinusMeanCosine) { y[0] = oneMinusMeanCosine(x.v[0]); }
