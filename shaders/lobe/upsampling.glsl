@@ -3,7 +3,6 @@
 #ifndef CHIARO_CPP
 #include "shaders/lobe/warp.glsl"
 #include "shaders/lobe/ndf.glsl"
-#include "shaders/lobe/area_light.glsl"
 #endif
 
 // The SG of the clamped cosine: what diffuse light comes through, about the normal.
@@ -27,8 +26,8 @@ FN Real lobeDistance(IN(Vec3) axis1, IN(Real) sharpness1, IN(Vec3) axis2, IN(Rea
   SphericalGaussian p = sgProductLog(axis1, sharpness1, axis2, sharpness2);
   Real both = oneMinusExpOver(Real(2.0) * p.sharpness);
   // Of ratios, as the logarithms of all three would cancel.
-  Real ratio = oneMinusExpOver(Real(4.0) * clampSharpness(sharpness1)) / both * (oneMinusExpOver(Real(4.0) * clampSharpness(sharpness2)) / both);
-  Real distance = Real(0.5) * log(ratio) - p.amplitude;
+  Real one = oneMinusExpOver(Real(4.0) * clampSharpness(sharpness1)) / both, other = oneMinusExpOver(Real(4.0) * clampSharpness(sharpness2)) / both;
+  Real distance = Real(0.5) * (log(one) + log(other)) - p.amplitude;
   return distance > Real(0.0) ? distance : (isNotANumber(distance) ? distance : Real(0.0));
 }
 
@@ -36,8 +35,12 @@ FN Real lobeDistance(IN(Vec3) axis1, IN(Real) sharpness1, IN(Vec3) axis2, IN(Rea
 // samples turns lobes by more than sharp ones are wide, so that all count as wide as that at least.
 CONST Real kTurnSharpness = Real(33.0);
 CONST Real kNearDistance = Real(0.05);
+FN Real turnedSharpness(IN(Real) sharpness) {
+  Real s = clampSharpness(sharpness);
+  return s / (Real(1.0) + s / kTurnSharpness);
+}
 FN Real lobeNearness(IN(Vec3) axis1, IN(Real) sharpness1, IN(Vec3) axis2, IN(Real) sharpness2) {
-  return kNearDistance / (kNearDistance + lobeDistance(axis1, blurredSharpness(sharpness1, kTurnSharpness), axis2, blurredSharpness(sharpness2, kTurnSharpness)));
+  return kNearDistance / (kNearDistance + lobeDistance(axis1, turnedSharpness(sharpness1), axis2, turnedSharpness(sharpness2)));
 }
 
 // The same of two normals, which knows nothing of sharpness: exp(-|n1 - n2|^2 / (2 variance)).

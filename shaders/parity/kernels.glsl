@@ -52,7 +52,7 @@ KERNEL(sgNormalizedInnerProduct) { y[0] = sgNormalizedInnerProduct(lobeAt(x, 0),
 KERNEL(lobeLikeness) {
   SphericalGaussian a = lobeAt(x, 0), b = lobeAt(x, 5);
   y[0] = lobeWeight(a.axis, a.sharpness, b.axis, b.sharpness);
-  y[1] = lobeDistance(a.axis, a.sharpness, b.axis, b.sharpness);
+  y[1] = Real(1.0) + lobeDistance(a.axis, a.sharpness, b.axis, b.sharpness);  // its natural size
   y[2] = lobeNearness(a.axis, a.sharpness, b.axis, b.sharpness);
   y[3] = normalWeight(a.axis, b.axis);
 }
