@@ -32,7 +32,7 @@ TEST(ViewOptions, PictureFormatIsByName) {
 TEST(ViewOptions, DebugViewsHaveNames) {
   EXPECT_EQ(debugViewFromName("none"), DebugView::none);
   EXPECT_EQ(debugViewFromName("ssdf"), DebugView::ssdf);
-  EXPECT_EQ(debugViewNames().size(), static_cast<std::size_t>(DebugView::ssdf) + 1);
+  EXPECT_EQ(debugViewNames().size(), static_cast<std::size_t>(DebugView::recomputed) + 1);
   EXPECT_THROW(debugViewFromName("depth"), Error);
 }
 
