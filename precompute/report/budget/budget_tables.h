@@ -1,9 +1,11 @@
 #pragma once
 /// A budget for people and machines.
 
+#include <optional>
 #include <string>
 
 #include "precompute/report/budget/budget.h"
+#include "precompute/report/budget/image_budget.h"
 
 namespace chiaro {
 
@@ -12,6 +14,8 @@ struct BudgetStudy {
   bool ground = false;
   VisibilitySettings measure;
   Budget budget;
+  ImageBudgetSettings drawn;
+  std::optional<ImageBudget> pictures;
 };
 
 std::string budgetTable(const BudgetStudy& study);
