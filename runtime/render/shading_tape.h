@@ -10,7 +10,7 @@ namespace chiaro {
 
 /// Numbers of shaders/stage/tape.glsl. What is asked:
 enum class ShadingAsks {
-  position = 0,     ///< nothing; `axis` is where the pixel is, metres, world space
+  surface = 0,      ///< nothing: what the pixel's surface is, in kSurfaceNotes of them, see ShadedSurface
   share = 1,        ///< share of a lobe above the horizon that arrives; in `answer.x`
   fixedShare = 2,   ///< the same weighted by the cosine to the normal
   mean = 3,         ///< mean radiance of the environment under a lobe
@@ -28,6 +28,8 @@ struct ShadingQuestion {
 
   ShadingAsks asks() const { return static_cast<ShadingAsks>(static_cast<int>(code)); }
 };
+/// The first questions of a pixel.
+inline constexpr std::size_t kSurfaceNotes = 4;
 static_assert(sizeof(ShadingQuestion) == 32 && offsetof(ShadingQuestion, answer) == 16, "std430 says otherwise");
 
 struct ShadingTape {
@@ -35,5 +37,20 @@ struct ShadingTape {
   std::vector<std::uint32_t> starts;       ///< #pixels + 1, top row first: a pixel's questions are from its start to before the next one's
   std::vector<ShadingQuestion> questions;
 };
+
+/// What the renderer shaded, textures filtered as it does: world space, unit vectors, reference/surface.h has the same in its own words.
+struct ShadedSurface {
+  glm::vec3 position, ng, n, t;
+  float alphaT, alphaB;
+  glm::vec3 f0, diffuse;
+  float f90;
+  glm::vec3 emission;
+};
+
+/// From the kSurfaceNotes that a pixel begins with.
+inline ShadedSurface shadedSurface(const ShadingQuestion* notes) {
+  return {.position = notes[0].axis, .ng = notes[0].answer, .n = notes[1].axis, .t = notes[1].answer, .alphaT = notes[0].sharpness, .alphaB = notes[1].sharpness,
+          .f0 = notes[2].axis, .diffuse = notes[2].answer, .f90 = notes[2].sharpness, .emission = notes[3].axis};
+}
 
 }  // namespace chiaro

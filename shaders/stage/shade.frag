@@ -39,8 +39,12 @@ void main() {
   else if (debugView == kDebugVisibility) radiance = vec3(broadVisibility(t, s.ng));
   else if (debugView == kDebugSsdf) radiance = signColor(ssdfAt(t, 2.0 * dot(s.n, s.wo) * s.n - s.wo));
   else {
-    taped(kTapedPosition, s.position, 0.0, vec3(0.0));
-    radiance = shade(s, t) + emissionHere(m, s);
+    vec3 emission = emissionHere(m, s);
+    taped(kTapedSurface, s.position, s.alphaT, s.ng);
+    taped(kTapedSurface, s.n, s.alphaB, s.t);
+    taped(kTapedSurface, s.f0, s.f90, s.diffuse);
+    taped(kTapedSurface, emission, 0.0, vec3(0.0));
+    radiance = shade(s, t) + emission;
     tapeEnd();
   }
   color = vec4(radiance, m.textures.y == 2 ? baseColor.a : 1.0);

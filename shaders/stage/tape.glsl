@@ -1,6 +1,6 @@
 // What a pixel asks of visibility and of light, in its order: counted, written down, or answered from outside with better values, so that one stage of the
 // shading is exact and the rest as it is (runtime/render/shading_tape.h). Without TAPE nothing is asked.
-const int kTapedPosition = 0;    // not a question: where the pixel is, in place of an axis
+const int kTapedSurface = 0;     // not a question: the surface, as textures were filtered for it
 const int kTapedShare = 1;       // visible share of a lobe, of what is above the horizon
 const int kTapedFixedShare = 2;  // the same weighted by the cosine: a fixed lobe of the vertices
 const int kTapedMean = 3;        // mean radiance of the environment under a lobe
@@ -33,7 +33,8 @@ vec3 taped(int kind, vec3 axis, float sharpness, vec3 own) {
   if (tapeMode == kTapeCounts) return own;
   uint place = tapeStarts[tapePixel()] + uint(asked);
   if (tapeMode == kTapeRecords) {
-    tape[place] = TapedQuestion(vec4(axis, sharpness), vec4(0.0, 0.0, 0.0, float(kind)));
+    // What the surface is has no answer and uses its place.
+    tape[place] = TapedQuestion(vec4(axis, sharpness), vec4(kind == kTapedSurface ? own : vec3(0.0), float(kind)));
     return own;
   }
   vec4 answer = tape[place].answer;

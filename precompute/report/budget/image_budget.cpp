@@ -63,9 +63,25 @@ ImageRgba blank(const ImageRgba& like) { return {.width = like.width, .height = 
 struct Traced {
   ShadingTape tape;                                 ///< with answers; where there is none the code is below 0
   ImageRgba gaussian;                               ///< drawn from the distribution's Gaussians
-  ReferenceHalves exact;
+  ImageRgba reflectance;                            ///< drawn from the exact reflectance of the renderer's surfaces
+  ReferenceHalves exact;                            ///< and of those that rays read
   std::vector<std::uint8_t> compared;               ///< by pixel
 };
+
+/// The surface a ray met, with the renderer's filtered textures in it.
+reference::Surface asDrawn(const reference::Surface& met, const ShadedSurface& drawn) {
+  reference::Surface surface = met;
+  const auto n = glm::normalize(glm::dvec3(drawn.n)), t = glm::normalize(glm::dvec3(drawn.t) - n * glm::dot(n, glm::dvec3(drawn.t)));
+  surface.worldFromTangent = glm::dmat3(t, glm::cross(n, t), n);
+  surface.brdf.alphaX = static_cast<double>(drawn.alphaT);
+  surface.brdf.alphaY = static_cast<double>(drawn.alphaB);
+  surface.brdf.f0 = glm::dvec3(drawn.f0);
+  surface.brdf.f90 = glm::dvec3(static_cast<double>(drawn.f90));
+  surface.brdf.diffuse = glm::dvec3(drawn.diffuse);
+  surface.brdf.coatNormal = met.worldFromTangent * met.brdf.coatNormal * surface.worldFromTangent;
+  surface.emission = glm::dvec3(drawn.emission);
+  return surface;
+}
 
 class PixelTracer {
  public:
@@ -81,23 +97,26 @@ class PixelTracer {
     if (first == last || !nearestFacing(ray, hit)) return;
     const glm::dvec3 wo = -glm::normalize(glm::dvec3(ray.direction));
     const auto surface = surfaces_.at(hit, wo);
-    const auto& place = traced.tape.questions[first];
-    if (surface.opacity < 1.0 || place.asks() != ShadingAsks::position) return;
-    if (!(glm::distance(glm::dvec3(place.axis), surface.position) <= kSamePoint * static_cast<double>(hit.distance))) return;
+    const auto shaded = shadedSurface(&traced.tape.questions[first]);
+    if (surface.opacity < 1.0 || !(glm::distance(glm::dvec3(shaded.position), surface.position) <= kSamePoint * static_cast<double>(hit.distance))) return;
+    const auto drawn = asDrawn(surface, shaded);
 
     const auto seed = reference::hashWords(reference::hashWords(settings_.seed + 7u, static_cast<std::uint32_t>(x)), static_cast<std::uint32_t>(y));
-    TracedLight light(surface, rays_, environment_, lights_, {.raysPerLobe = settings_.raysPerLobe, .lightSamples = settings_.samples, .seed = seed});
-    for (auto q = first; q < last; ++q) {
+    const TracedLightSettings samples{.raysPerLobe = settings_.raysPerLobe, .lightSamples = settings_.samples, .seed = seed};
+    TracedLight light(drawn, rays_, environment_, lights_, samples);
+    for (auto q = first + kSurfaceNotes; q < last; ++q) {
       auto& question = traced.tape.questions[q];
       const auto answer = answerOf(question, light);
       if (answer) question.answer = glm::vec3(*answer);
       else question.code = -1.0f;
     }
+    const auto texel = [](glm::dvec3 radiance) { return glm::vec4(glm::vec3(radiance), 1.0f); };
     const auto one = light.reflected(wo, 0), other = light.reflected(wo, 1);
-    const auto texel = [&](glm::dvec3 reflected) { return glm::vec4(glm::vec3(reflected + surface.emission), 1.0f); };
-    traced.exact.first.texels[pixel] = texel(one.exact);
-    traced.exact.second.texels[pixel] = texel(other.exact);
-    traced.gaussian.texels[pixel] = texel(0.5 * (one.gaussian + other.gaussian));
+    traced.gaussian.texels[pixel] = texel(drawn.emission + 0.5 * (one.gaussian + other.gaussian));
+    traced.reflectance.texels[pixel] = texel(drawn.emission + 0.5 * (one.exact + other.exact));
+    TracedLight own(surface, rays_, environment_, lights_, samples);
+    traced.exact.first.texels[pixel] = texel(surface.emission + own.reflected(wo, 0).exact);
+    traced.exact.second.texels[pixel] = texel(surface.emission + own.reflected(wo, 1).exact);
     traced.compared[pixel] = 1;
   }
 
@@ -200,8 +219,9 @@ ImageBudget imageBudget(const BakedScene& baked, const ImageBudgetSettings& sett
   renderer.render(budget.camera, draw);
   stage(settings.upsample > 1 ? "every pixel shaded" : "as drawn", "stored visibility", renderer.readRadiance());
 
-  Traced traced{.tape = renderer.record(budget.camera, draw), .gaussian = blank(budget.stages.back().picture), .exact = {}, .compared = {}};
+  Traced traced{.tape = renderer.record(budget.camera, draw), .gaussian = blank(budget.stages.back().picture), .reflectance = {}, .exact = {}, .compared = {}};
   if (traced.tape.questions.empty()) throw Error(ExitCode::failed, "report", "no pixel shows the scene", "give a --camera that looks at it");
+  traced.reflectance = traced.gaussian;
   traced.exact = {traced.gaussian, traced.gaussian};
   traced.compared.assign(traced.gaussian.texels.size(), 0);
   auto lights = prefiltered.lights;
@@ -227,7 +247,8 @@ ImageBudget imageBudget(const BakedScene& baked, const ImageBudgetSettings& sett
   }
   context.debugLog().requireClean("the rendering");
   stage("Gaussians at half vectors", "Gaussians of the distribution", std::move(traced.gaussian));
-  stage("exact reflectance", "left: noise", meanOf(traced.exact));
+  stage("exact reflectance", "texture filtering", std::move(traced.reflectance));
+  stage("surfaces as rays read them", "left: noise", meanOf(traced.exact));
 
   auto halves = drawReference(scene.scene, environment, budget.camera, settings, progress);
   const auto& drawn = budget.stages.front().picture;

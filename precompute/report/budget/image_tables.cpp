@@ -58,7 +58,7 @@ std::string imageBudgetTable(const ImageBudget& budget) {
                   stage.error.flip, stage.cause.c_str(), causedBy(budget, i, &ImageError::rmse), stage.change);
     text += line;
   }
-  std::snprintf(line, sizeof line, "  noise: reference %.5f, exact reflectance %.5f; left over both: %.2f\n", budget.referenceNoise.rmse, budget.exactNoise.rmse, budget.leftOverNoise());
+  std::snprintf(line, sizeof line, "  noise: reference %.5f, last picture %.5f; left over both: %.2f\n", budget.referenceNoise.rmse, budget.exactNoise.rmse, budget.leftOverNoise());
   return text + line;
 }
 
