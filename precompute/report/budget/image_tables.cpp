@@ -38,6 +38,13 @@ std::string shown(const ImageBudget& budget, const ImageRgba& image, const std::
   return picture(encodePng(displayImage(image, budget.display.exposure, budget.display.toneMap)), what);
 }
 
+/// A stage's picture against the next one's, the last against the reference.
+std::vector<std::uint8_t> changeMap(const ImageBudget& budget, std::size_t stage) {
+  ImageRgba next = stage + 1 < budget.stages.size() ? budget.stages[stage + 1].picture : budget.reference;
+  for (std::size_t i = 0; i < next.texels.size(); ++i) next.texels[i].a = budget.reference.texels[i].a;
+  return encodePng(errorMap(budget.stages[stage].picture, next, budget.display));
+}
+
 std::string drawnAs(const ImageBudgetSettings& drawn) {
   std::string text = drawn.environment;
   if (drawn.materials.roughness) text += ", roughness " + formatted("%.3g", static_cast<double>(*drawn.materials.roughness));
@@ -123,10 +130,10 @@ std::string imageBudgetSection(const ImageBudget& budget, const ImageBudgetSetti
     rows.push_back({.cells = {textCell(stage.what), numberCell("%.5f", stage.error.rmse), numberCell("%.2f", stage.error.psnr), numberCell("%.5f", stage.error.linearRmse),
                               numberCell("%.2f", stage.error.linearPsnr), numberCell("%.4f", stage.error.flip), textCell(stage.cause), numberCell("%+.5f", causedBy(budget, i, &ImageError::rmse)),
                               numberCell("%+.5f", causedBy(budget, i, &ImageError::linearRmse)), numberCell("%+.4f", causedBy(budget, i, &ImageError::flip)), numberCell("%.5f", stage.change)}});
-    pictures += "<figure>" + shown(budget, stage.picture, stage.what) + picture(encodePng(errorMap(stage.picture, budget.reference, budget.display)), "error, " + stage.what) + "<figcaption>" +
-                htmlText(stage.what) + "</figcaption></figure>\n";
+    pictures += "<figure>" + shown(budget, stage.picture, stage.what) + picture(changeMap(budget, i), "what " + stage.cause + " changes") + "<figcaption>" + htmlText(stage.what) +
+                "; below: what it has beyond the next, " + htmlText(stage.cause) + "</figcaption></figure>\n";
   }
-  pictures += "<figure>" + shown(budget, budget.reference, "reference") + "<figcaption>reference; pixels left out are dark in the error maps</figcaption></figure>\n";
+  pictures += "<figure>" + shown(budget, budget.reference, "reference") + "<figcaption>reference; pixels left out are dark in the maps</figcaption></figure>\n";
   return "<h2>Errors of a picture</h2>\n<p>The renderer's own picture (" + htmlText(drawnAs(drawn)) +
          ") with one stage of its shading after another made exact; what is asked of the exact stages is traced for each pixel. What the distance from the reference falls by is that "
          "stage's share. The last picture uses nothing of the renderer and other rays than the reference: what is left of it is noise (" +
