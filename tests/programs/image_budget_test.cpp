@@ -1,10 +1,13 @@
-// The exact answers that the picture's budget is made with, against closed forms.
+// The exact answers that the picture's budget is made with, against closed forms; and the error of vertices as colours.
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstring>
+#include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "precompute/report/budget/error_mesh.h"
 #include "precompute/report/budget/gaussian_reflectance.h"
 #include "precompute/report/budget/traced_light.h"
 #include "shaders/cpp/lobe.h"
@@ -117,6 +120,84 @@ TEST(GaussianReflectance, KeepsTheEnergyOfTheDistribution) {
   const glm::dvec3 wi = glm::normalize(glm::dvec3(0.5, 0, 1));
   EXPECT_EQ(gaussianOverExact({.alphaX = 0.5, .alphaY = 0.5}, n, wi), 1.0) << "rough: no lobes";
   EXPECT_EQ(gaussianOverExact({.alphaX = 0.1, .alphaY = 0.2}, n, wi), 1.0) << "not told apart";
+}
+
+/// Two floors of four vertices, the second far to the right.
+Scene floors() {
+  Scene scene;
+  scene.meshNames = {"near", ""};
+  for (const float x : {0.0f, 10.0f}) {
+    Primitive primitive;
+    primitive.mesh = static_cast<int>(scene.primitives.size());
+    primitive.positions = {{x, 0, 1}, {x + 1, 0, 1}, {x + 1, 0, 0}, {x, 0, 0}};
+    primitive.normals.assign(4, kUp);
+    primitive.texcoords.assign(4, glm::vec2(0.0f));
+    primitive.indices = {0, 1, 2, 0, 2, 3};
+    scene.primitives.push_back(primitive);
+  }
+  return scene;
+}
+
+TEST(VertexErrors, WorstAreApart) {
+  const Scene scene = floors();
+  auto crowded = floors();
+  crowded.primitives[1].positions[1] = crowded.primitives[1].positions[0] + glm::vec3(0.1f, 0, 0);  // diagonal 11: a fiftieth is .22
+  const VertexErrors errors{.error = {0.1f, 0.2f, 0.0f, 0.3f, 0.9f, 0.8f, 0.7f, 0.6f}};
+  const auto numbers = [&](const Scene& of) {
+    std::vector<std::size_t> all;
+    for (const auto& one : worstVertices(of, errors, 4)) all.push_back(one.vertex);
+    return all;
+  };
+  EXPECT_EQ(numbers(scene), (std::vector<std::size_t>{4, 5, 6, 7}));
+  EXPECT_EQ(numbers(crowded), (std::vector<std::size_t>{4, 6, 7, 3}));
+  const auto worst = worstVertices(scene, errors, 8);
+  EXPECT_EQ(worst[0].mesh, "mesh 1");
+  EXPECT_EQ(worst[4].mesh, "near");
+  EXPECT_EQ(worst[4].position, glm::vec3(0, 0, 0));
+}
+
+TEST(ErrorMesh, ColoursAreMagmaOfTheError) {
+  const Scene scene = floors();
+  const VertexErrors errors{.error = {0.0f, 0.025f, 0.05f, 0.5f, 0.0f, 0.0f, 0.0f, 0.0f}};
+  const auto glb = errorMesh(scene, errors, "test");
+  std::uint32_t length = 0;
+  std::memcpy(&length, glb.data() + 12, 4);
+  const auto json = nlohmann::json::parse(glb.begin() + 20, glb.begin() + 20 + length);
+  EXPECT_EQ(json["extensionsUsed"], nlohmann::json::parse(R"(["KHR_materials_unlit"])"));
+  EXPECT_EQ(json["asset"]["extras"]["error_at_pale_yellow"], 0.05);
+  const auto& attributes = json["meshes"][0]["primitives"][0]["attributes"];
+  EXPECT_FALSE(attributes.contains("TEXCOORD_0"));
+  const auto& accessor = json["accessors"][attributes["COLOR_0"].get<std::size_t>()];
+  EXPECT_EQ(accessor["count"], 4);
+  EXPECT_EQ(accessor["normalized"], true);
+  const auto& view = json["bufferViews"][accessor["bufferView"].get<std::size_t>()];
+  std::uint16_t colors[16];
+  std::memcpy(colors, glb.data() + 28 + length + view["byteOffset"].get<std::size_t>(), sizeof colors);
+  // #000004, #b73779, #fcfdbf in linear values, the last also for what is beyond the range.
+  const double expected[4][3] = {{0, 0, 4}, {183, 55, 121}, {252, 253, 191}, {252, 253, 191}};
+  for (int v = 0; v < 4; ++v) {
+    for (int c = 0; c < 3; ++c) {
+      const double x = expected[v][c] / 255.0, linear = x <= 0.04045 ? x / 12.92 : std::pow((x + 0.055) / 1.055, 2.4);
+      EXPECT_NEAR(colors[4 * v + c] / 65535.0, linear, v == 1 ? 0.01 : 1e-5) << v << ' ' << c;
+    }
+    EXPECT_EQ(colors[4 * v + 3], 65535);
+  }
+}
+
+TEST(ErrorMesh, IsSeenWhereItIs) {
+  const Scene scene = floors();
+  const RayScene rays(scene);
+  const VertexErrors errors{.error = {0, 0, 0, 0, 1, 1, 1, 1}};
+  const auto worst = worstVertices(scene, errors, 1).front();
+  const auto image = errorMeshPicture(scene, rays, errors, cameraBefore(worst, scene, rays), {31, 31});
+  // A corner of the floor: a quarter of the view is pale yellow, seen straight from above, the rest is nothing.
+  int pale = 0, nothing = 0;
+  for (std::size_t i = 0; i < image.texels.size(); i += 4) {
+    pale += image.texels[i] > 200;
+    nothing += image.texels[i] == 48;
+  }
+  EXPECT_NEAR(pale, 31 * 31 / 4, 40);
+  EXPECT_EQ(pale + nothing, 31 * 31);
 }
 
 }  // namespace

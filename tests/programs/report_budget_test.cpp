@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "assets/file.h"
+#include "assets/scene/load_scene.h"
 #include "tests/programs/browser.h"
 #include "tests/programs/view_support.h"
 
@@ -69,6 +70,17 @@ TEST_F(ReportBudget, AddsUpToTheBakesErrorAndEndsInNoise) {
     found += error;
   }
   EXPECT_LE(found, sum);
+  const auto& vertices = json["worst_vertices"];
+  ASSERT_EQ(vertices.size(), 8u);
+  for (std::size_t i = 1; i < 8; ++i) EXPECT_LE(vertices[i]["error"], vertices[i - 1]["error"]);
+  EXPECT_GE(vertices[7]["error"], json["vertex_error"]["percentile_95"]);
+  // Every vertex by 24 rays a lobe, whose noise is in it, and some by 256.
+  double mean = 0.0;
+  for (std::size_t s = 0; s < 7; ++s) mean += stages[0]["error_vertices"][s].get<double>() / 7.0;
+  EXPECT_GE(json["vertex_error"]["mean"], 0.8 * mean);
+  EXPECT_LE(json["vertex_error"]["mean"], mean + 0.01);
+  const Scene mesh = loadScene("budget/error.glb");
+  EXPECT_EQ(mesh.triangleCount(), json["triangles"].get<std::size_t>());
   const std::string csv = textOf("budget/budget.csv");
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 2 * 6);
   EXPECT_THAT(run_.out, HasSubstr("half-space and maps"));
@@ -107,11 +119,12 @@ TEST_F(ReportBudget, PageInABrowser) {
   const std::string dom = documentAfter("budget/index.html", R"(
     const root = document.documentElement.dataset;
     root.bars = ['vertices', 'triangles', 'pictures'].map(place => Chart.getChart('chart_' + place).data.datasets.length).join();
+    root.marks = document.querySelectorAll('.marked span').length > 0 && document.querySelectorAll('#worst_vertices img').length === 8;
     root.inked = [...document.querySelectorAll('canvas')].every(canvas => canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data.some(value => value !== 0));
     root.fits = document.documentElement.scrollWidth <= innerWidth;
   )");
   EXPECT_THAT(dom.substr(0, 1000), Not(HasSubstr("data-error")));
-  for (const char* state : {"data-bars=\"6,6,3\"", "data-inked=\"true\"", "data-fits=\"true\""}) EXPECT_THAT(dom.substr(0, 1000), HasSubstr(state));
+  for (const char* state : {"data-bars=\"6,6,3\"", "data-marks=\"true\"", "data-inked=\"true\"", "data-fits=\"true\""}) EXPECT_THAT(dom.substr(0, 1000), HasSubstr(state));
 }
 
 TEST_F(ReportBudget, Errors) {

@@ -34,14 +34,14 @@ struct BudgetOptions {
   VisibilitySettings measure{.vertices = 250, .points = 250, .rays = 2048};
   ImageBudgetSettings pictures;
   std::string size = "96x72", camera = "auto";
-  bool noPictures = false;
+  bool noPictures = false, noMesh = false;
   bool quiet = false;
 };
 
 void declareOptions(CLI::App& app, BudgetOptions& options) {
   const auto shown = [](CLI::Option* option) { option->type_name("N")->capture_default_str(); };
   app.add_option("scene", options.scene, "Scene file that is not baked, or builtin:NAME")->required()->type_name("SCENE");
-  app.add_option("-o,--output", options.output, "Folder for index.html, budget.json, budget.csv and budget_pictures.csv")->required()->type_name("DIR");
+  app.add_option("-o,--output", options.output, "Folder for index.html, budget.json, budget.csv, budget_pictures.csv and error.glb")->required()->type_name("DIR");
   shown(app.add_option("--resolution", options.settings.resolution, "Texels a side of the octahedral sphere, 16 to 128, a multiple of 8"));
   shown(app.add_option("--terms", options.settings.terms, "Weights a lookup fetches at most, 0 as a bake chooses"));
   shown(app.add_option("--bytes", options.settings.bytesPerVertex, "Bytes a vertex that rounding has to fit, 0 as a bake chooses"));
@@ -57,6 +57,7 @@ void declareOptions(CLI::App& app, BudgetOptions& options) {
   shown(app.add_option("--samples", options.pictures.samples, "Sample pairs a pixel of the reference and of exact light, an even number"));
   shown(app.add_option("--rays-per-lobe", options.pictures.raysPerLobe, "Of every lobe whose visible share a pixel asks for"));
   shown(app.add_option("--upsample", options.pictures.upsample, "Draw the pictures so, 1 to 4: upsampling is a cause of its own"));
+  app.add_flag("--no-mesh", options.noMesh, "Leave out the error at every vertex and error.glb");
   app.add_flag("--no-pictures", options.noPictures, "Leave the pictures out: needs no OpenGL");
   shown(app.add_option("--seed", options.measure.seed, "Of the random choices"));
   shown(app.add_option("--threads", options.measure.threads, "CPU threads, 0 is all; never changes the figures"));
@@ -108,7 +109,8 @@ ExitCode budgetReport(int argc, const char* const* argv) {
   catchInterrupts();
 
   ProgressBar bar(progressStyle(options.quiet));
-  BudgetStudy study{.scene = options.scene, .ground = options.ground, .measure = options.measure, .budget = {}, .drawn = options.pictures, .pictures = {}};
+  BudgetStudy study{.scene = options.scene, .ground = options.ground, .measure = options.measure, .budget = {}, .drawn = options.pictures, .pictures = {}, .view = {}};
+  std::vector<std::uint8_t> mesh;
   namingScene(options.scene, [&] {
     const Scene scene = loadPreparedScene(options.scene, options.ground);
     const ProgressHandler progress = [&](const std::string& stage, double done) {
@@ -117,6 +119,10 @@ ExitCode budgetReport(int argc, const char* const* argv) {
     };
     BakedScene baked;
     study.budget = errorBudget(scene, options.settings, options.measure, baked, progress);
+    if (!options.noMesh) {
+      study.view = viewErrors(scene, vertexErrors(scene, baked.transfer, {.seed = options.measure.seed, .threads = options.measure.threads}, progress), options.pictures.camera);
+      mesh = errorMesh(scene, study.view->errors, "chiaro-report " CHIARO_VERSION);
+    }
     if (!options.noPictures) study.pictures = imageBudget(baked, options.pictures, progress);
   });
   bar.clear();
@@ -124,6 +130,7 @@ ExitCode budgetReport(int argc, const char* const* argv) {
   makeFolder(options.output);
   writeFileAtomically(options.output / "budget.json", budgetJson(study, CHIARO_VERSION));
   writeFileAtomically(options.output / "budget.csv", budgetCsv(study));
+  if (!mesh.empty()) writeFileAtomically(options.output / "error.glb", mesh);
   if (study.pictures) writeFileAtomically(options.output / "budget_pictures.csv", imageBudgetCsv(*study.pictures));
   writeFileAtomically(options.output / "index.html", budgetPage(study, CHIARO_VERSION));
   if (!options.quiet) std::printf("%s\nwrote %s\n", budgetTable(study).c_str(), (options.output / "index.html").c_str());

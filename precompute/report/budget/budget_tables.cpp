@@ -124,6 +124,13 @@ std::string budgetJson(const BudgetStudy& study, const std::string& version) {
   for (const auto& one : budget.worst)
     json["worst_points"].push_back({{"at_vertex", one.atVertex}, {"vertex", one.vertex}, {"position", {one.position.x, one.position.y, one.position.z}}, {"error", one.error},
                                     {"largest", one.worst}, {"largest_at_sharpness", one.worstSharpness}});
+  json["vertex_error"] = nullptr;
+  json["worst_vertices"] = Json::array();
+  if (study.view) {
+    json["vertex_error"] = {{"mean", study.view->errors.mean}, {"median", study.view->errors.median}, {"percentile_95", study.view->errors.percentile95}};
+    for (const auto& [vertex, at, closeUp] : study.view->worst)
+      json["worst_vertices"].push_back({{"vertex", vertex.vertex}, {"mesh", vertex.mesh}, {"position", {vertex.position.x, vertex.position.y, vertex.position.z}}, {"error", vertex.error}});
+  }
   json["pictures"] = study.pictures ? imageBudgetJson(*study.pictures, study.drawn) : Json(nullptr);
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
@@ -167,6 +174,7 @@ std::string budgetPage(const BudgetStudy& study, const std::string& version) {
       "fraction of lobes from traced rays, " +
       std::to_string(study.measure.vertices) + " random vertices" + (study.measure.points > 0 ? " and " + std::to_string(study.measure.points) + " points inside triangles" : "") +
       ", 16 axes each.</p>\n<div class=\"row\">\n" + charts + "</div>\n" + tables + worstTable(budget);
+  if (study.view) body += errorViewSection(*study.view);
   if (study.pictures) {
     body += imageBudgetSection(*study.pictures, study.drawn);
     data["pictures"] = imageBudgetChart(*study.pictures);

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "precompute/report/budget/budget.h"
+#include "precompute/report/budget/error_view.h"
 #include "precompute/report/budget/image_budget.h"
 
 namespace chiaro {
@@ -16,6 +17,7 @@ struct BudgetStudy {
   Budget budget;
   ImageBudgetSettings drawn;
   std::optional<ImageBudget> pictures;
+  std::optional<ErrorView> view;
 };
 
 std::string budgetTable(const BudgetStudy& study);
