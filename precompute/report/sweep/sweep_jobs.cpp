@@ -17,6 +17,7 @@
 #include "assets/error.h"
 #include "assets/file.h"
 #include "precompute/parallel.h"
+#include "precompute/report/report_folder.h"
 #include "precompute/report/sweep/sweep_bakes.h"
 
 extern char** environ;
@@ -115,7 +116,7 @@ void bakeInParallel(const SweepBakes& bakes, const std::vector<SweepPoint>& poin
     if (!known && !bakes.isStored(points[place])) waiting.push_back(place);
   }
   if (waiting.empty()) return;
-  std::filesystem::create_directories(bakes.folder());
+  makeFolder(bakes.folder());
   const auto all = waiting.size();
   const int each = std::max(1, threadCount(threads) / jobs);
   Children children;
