@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "precompute/reference/lamp_sampler.h"
+#include "precompute/reference/reflection_sampler.h"
 
 namespace chiaro::reference {
 namespace {
@@ -51,14 +52,17 @@ template <class Source>
 class LightGatherer {
  public:
   LightGatherer(const Surface& surface, glm::dvec3 wo, const Source& light, const RayScene* rays, Strategy strategy)
-      : surface_(surface), wo_(wo * surface.worldFromTangent), light_(light), rays_(rays) {
+      : surface_(surface),
+        wo_(wo * surface.worldFromTangent),
+        light_(light),
+        rays_(rays),
+        sampler_(surface.brdf, wo_,
+                 strategy == Strategy::reflection ? 1.0
+                 : strategy == Strategy::cosine   ? 0.0
+                                                  : reflectionShare(surface.brdf, wo_),
+                 strategy == Strategy::combined ? coatShare(surface.brdf, wo_) : 0.0) {
     useLight_ = light.any() && (strategy == Strategy::combined || strategy == Strategy::light);
     useBrdf_ = strategy != Strategy::light;
-    reflectionShare_ = strategy == Strategy::reflection ? 1.0
-                       : strategy == Strategy::cosine   ? 0.0
-                                                        : reflectionShare(surface.brdf, wo_);
-    coatShare_ = strategy == Strategy::combined ? coatShare(surface.brdf, wo_) : 0.0;
-    reflectionShare_ *= 1.0 - coatShare_;
   }
 
   /// One sample of the radiance towards the viewer.
@@ -69,11 +73,7 @@ class LightGatherer {
       sum += contribution(wi, wi * surface_.worldFromTangent);
     }
     if (useBrdf_) {
-      const double choice = points.single(index, 2);
-      const glm::dvec2 random = points.pair(index, 1);
-      const glm::dvec3 local = choice < reflectionShare_                ? sampleReflection(surface_.brdf, wo_, random)
-                               : choice < reflectionShare_ + coatShare_ ? sampleCoat(surface_.brdf, wo_, random)
-                                                                        : sampleCosine(random);
+      const glm::dvec3 local = sampler_.sample(points.single(index, 2), points.pair(index, 1));
       sum += contribution(surface_.worldFromTangent * local, local);
     }
     return sum;
@@ -92,11 +92,7 @@ class LightGatherer {
     const glm::dvec3 value = reflected * light.radiance;
     if (!(value.x + value.y + value.z > 0.0)) return none;
     double density = useLight_ ? light.density : 0.0;
-    if (useBrdf_) {
-      density +=
-          reflectionShare_ * reflectionDensity(surface_.brdf, wo_, local) + (1.0 - reflectionShare_ - coatShare_) * cosineDensity(local);
-      if (coatShare_ > 0.0) density += coatShare_ * coatDensity(surface_.brdf, wo_, local);
-    }
+    if (useBrdf_) density += sampler_.density(local);
     if (!(density > 0.0)) return none;
     if (rays_ != nullptr) {
       ++rayCount_;
@@ -109,10 +105,9 @@ class LightGatherer {
   glm::dvec3 wo_;  ///< in the tangent frame
   const Source& light_;
   const RayScene* rays_;
+  ReflectionSampler sampler_;
   bool useLight_ = true;
   bool useBrdf_ = true;
-  double reflectionShare_ = 0.5;
-  double coatShare_ = 0.0;
   std::uint64_t rayCount_ = 0;
 };
 

@@ -13,6 +13,7 @@
 #include "precompute/reference/environment_sampler.h"
 #include "precompute/reference/sampling.h"
 #include "precompute/reference/surface.h"
+#include "precompute/reference/view_ray.h"
 
 namespace chiaro {
 namespace {
@@ -22,33 +23,6 @@ using namespace reference;
 constexpr int kTile = 16;
 /// Blended surfaces behind one another; what lies behind the last is not seen.
 constexpr int kMaxLayers = 64;
-
-struct ViewRay {
-  glm::vec3 origin;
-  glm::vec3 direction;
-  float near;
-  float far;
-};
-
-/// The ray through a point of the picture, (0,0) its top left and (1,1) its bottom right corner.
-ViewRay viewRay(const Camera& camera, double aspect, glm::dvec2 at) {
-  const glm::dvec2 screen((2.0 * at.x - 1.0) * aspect, 1.0 - 2.0 * at.y);
-  const glm::dmat4 worldFromCamera(camera.worldFromCamera);
-  glm::dvec3 origin(0.0);
-  glm::dvec3 direction(0.0, 0.0, -1.0);
-  if (camera.perspective) {
-    direction = glm::normalize(glm::dvec3(std::tan(0.5 * static_cast<double>(camera.verticalFov)) * screen, -1.0));
-  } else {
-    origin = glm::dvec3(static_cast<double>(camera.verticalExtent) * screen, 0.0);
-  }
-  const double perDepth = -1.0 / direction.z;  // the planes are at depths, a ray measures along itself
-  ViewRay ray;
-  ray.origin = glm::vec3(glm::dvec3(worldFromCamera * glm::dvec4(origin, 1.0)));
-  ray.direction = glm::vec3(glm::normalize(glm::dvec3(worldFromCamera * glm::dvec4(direction, 0.0))));
-  ray.near = static_cast<float>(static_cast<double>(camera.nearPlane) * perDepth);
-  ray.far = static_cast<float>(static_cast<double>(camera.farPlane) * perDepth);
-  return ray;
-}
 
 /// What one ray of the camera brings back, in front of whatever the background is.
 struct Seen {

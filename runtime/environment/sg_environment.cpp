@@ -22,15 +22,18 @@ void check(const Environment& environment, const SgEnvironmentSettings& settings
   for (const glm::vec3& texel : map.texels)
     if (!(texel.x >= 0 && texel.y >= 0 && texel.z >= 0 && texel.x + texel.y + texel.z <= 3e30f))
       throw inputError(environment.name, "the environment has a radiance that is negative, undefined or above 1e30", "clean the image");
-  const int resolution = settings.finestResolution;
-  if (resolution < 16 || resolution > 1024 || (resolution & (resolution - 1)) != 0)
-    throw usageError("finestResolution", std::to_string(resolution) + " is no power of two from 16 to 1024", "use 512");
+  requireFinestResolution(settings.finestResolution, "finestResolution");
   if (!(settings.minLightSharpness > 0 && settings.minLightSharpness <= settings.maxLightSharpness &&
         settings.maxLightSharpness <= 1e8f))
     throw usageError("minLightSharpness", "the bounds of the light sharpness are not 0 < min <= max <= 1e8", "use 20 and 1e6");
 }
 
 }  // namespace
+
+void requireFinestResolution(int resolution, const std::string& where) {
+  if (resolution < 16 || resolution > 1024 || (resolution & (resolution - 1)) != 0)
+    throw usageError(where, std::to_string(resolution) + " is no power of two from 16 to 1024", "use 512");
+}
 
 SgEnvironment prepareEnvironment(const Environment& environment, const SgEnvironmentSettings& settings) {
   check(environment, settings);

@@ -3,6 +3,7 @@
 /// section 5; ALGORITHMS 4.1, 4.2).
 
 #include <glm/glm.hpp>
+#include <string>
 #include <vector>
 
 #include "assets/builtin/environment.h"
@@ -48,6 +49,9 @@ struct SgEnvironment {
   /// (ALGORITHMS 1.4) where it needs the rest alone.
   SgPyramid pyramid;
 };
+
+/// Throws Error (usage) unless SgEnvironmentSettings::finestResolution may be this. `where` names the setting.
+void requireFinestResolution(int resolution, const std::string& where);
 
 /// Deterministic for any thread count. A constant environment gives that constant at every texel and no light.
 /// Throws Error: unreadableInput for an empty image or one with negative, infinite or undefined texels; usage for settings

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <span>
+#include <utility>
 
 #include "assets/error.h"
 #include "assets/scene/material_override.h"
@@ -25,6 +27,9 @@ namespace {
 constexpr std::size_t kMostBodies = 255;  // 0 for what rests; shaders/stage/upsample_guide.glsl keeps eight bits
 
 constexpr const char* kCoarsePass = "coarse shade";
+
+/// Numbers of shaders/stage/tape.glsl.
+enum class TapeMode { counts = 0, records = 1, answers = 2 };
 
 /// Debug views of what a surface is are not upsampled.
 bool upsamples(const RenderSettings& settings) {
@@ -74,6 +79,9 @@ struct Renderer::Impl {
   std::optional<MaterialFeatures> built;  // what the programs and modelTable are for
   int builtLobes = 0;
   bool builtUpsampler = false;
+  gl::Program tapeProgram;           // made when first asked for
+  std::optional<TapeMode> tapeMode;  // while a frame is recorded or replayed
+  gl::Buffer tape, tapeStarts;
   gl::VertexArray noAttributes = gl::VertexArray::create();
   LightVisibility lightVisibility;
   std::unique_ptr<Target> shaded, resolved, displayed;
@@ -128,6 +136,62 @@ struct Renderer::Impl {
     shadeProgram = gl::Program::load({{GL_VERTEX_SHADER, "shaders/stage/mesh.vert"}, {GL_FRAGMENT_SHADER, "shaders/stage/shade.frag"}}, defines);
     built = features;
     builtLobes = lobes;
+    tapeProgram = {};
+  }
+
+  void buildTape(const RenderSettings& settings) {
+    build(settings);
+    if (tapeProgram) return;
+    auto defines = scene.features().defines(kReflectanceLayers);
+    for (auto& define : shadingDefines(settings.lobes)) defines.push_back(std::move(define));
+    defines.emplace_back("TAPE 1");
+    tapeProgram = gl::Program::load({{GL_VERTEX_SHADER, "shaders/stage/mesh.vert"}, {GL_FRAGMENT_SHADER, "shaders/stage/shade.frag"}}, defines);
+  }
+
+  void renderTaped(TapeMode mode, const Camera& camera, const RenderSettings& settings) {
+    tapeProgram.set("tapeMode", static_cast<int>(mode));
+    tapeProgram.set("tapeSize", glm::ivec2(settings.width, settings.height));
+    tape.bindBase(GL_SHADER_STORAGE_BUFFER, 8);
+    tapeStarts.bindBase(GL_SHADER_STORAGE_BUFFER, 9);
+    tapeMode = mode;
+    try {
+      render(camera, settings);
+    } catch (...) {
+      tapeMode.reset();
+      throw;
+    }
+    tapeMode.reset();
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+  }
+
+  ShadingTape record(const Camera& camera, const RenderSettings& settings) {
+    if (settings.supersample != 1 || settings.upsample != 1 || settings.debugView != DebugView::none)
+      throw usageError("record", "a recorded frame has one shaded point a pixel and no debug view", "check supersample, upsample and debugView");
+    buildTape(settings);
+    ShadingTape result{.width = settings.width, .height = settings.height, .starts = {}, .questions = {}};
+    const std::size_t pixels = static_cast<std::size_t>(settings.width) * static_cast<std::size_t>(settings.height);
+    result.starts.assign(pixels + 1, 0);
+    tape = gl::Buffer(sizeof(ShadingQuestion));
+    tapeStarts = gl::Buffer(result.starts);
+    renderTaped(TapeMode::counts, camera, settings);
+    std::uint32_t sum = 0;
+    for (auto& start : result.starts = tapeStarts.read<std::uint32_t>()) start = std::exchange(sum, sum + start);
+    if (sum == 0) return result;
+    result.questions.resize(sum);
+    tapeStarts.write(0, std::span<const std::uint32_t>(result.starts));
+    tape = gl::Buffer(result.questions);
+    renderTaped(TapeMode::records, camera, settings);
+    result.questions = tape.read<ShadingQuestion>();
+    return result;
+  }
+
+  void replay(const Camera& camera, const RenderSettings& settings, const ShadingTape& answered) {
+    if (answered.width != settings.width || answered.height != settings.height || answered.questions.empty())
+      throw Error(ExitCode::failed, "replay", "the tape is not of this frame", "pass what record() returned");
+    buildTape(settings);
+    tape = gl::Buffer(answered.questions);
+    tapeStarts = gl::Buffer(answered.starts);
+    renderTaped(TapeMode::answers, camera, settings);
   }
 
   void setLights(const std::vector<Light>& all) {
@@ -218,9 +282,10 @@ struct Renderer::Impl {
   }
 
   void drawShaded() const {
-    shadeProgram.use();
+    const gl::Program& program = tapeMode ? tapeProgram : shadeProgram;
+    program.use();
     glDepthFunc(GL_EQUAL);
-    drawOpaque(shadeProgram);
+    drawOpaque(program);
   }
 
   /// Blended surfaces over what is behind them, farthest primitive first.
@@ -412,12 +477,30 @@ void Renderer::setMaterials(const std::vector<Material>& materials) { impl_->sce
 
 void Renderer::setPoses(const std::vector<glm::mat4>& worldFromBaked) { impl_->setPoses(worldFromBaked); }
 
-void Renderer::render(const Camera& camera, const RenderSettings& settings) {
+namespace {
+
+void requireDrawable(const RenderSettings& settings) {
   if (settings.width < 1 || settings.height < 1 || settings.supersample < 1 || settings.supersample > 8)
     throw usageError("size", "a picture needs at least one pixel and 1 to 8 samples a side", "check width, height and supersample");
   requireLobes(settings.lobes, "lobes");
   requireUpsample(settings.upsample, "upsample");
+}
+
+}  // namespace
+
+void Renderer::render(const Camera& camera, const RenderSettings& settings) {
+  requireDrawable(settings);
   impl_->render(camera, settings);
+}
+
+ShadingTape Renderer::record(const Camera& camera, const RenderSettings& settings) {
+  requireDrawable(settings);
+  return impl_->record(camera, settings);
+}
+
+void Renderer::replay(const Camera& camera, const RenderSettings& settings, const ShadingTape& answered) {
+  requireDrawable(settings);
+  impl_->replay(camera, settings, answered);
 }
 
 void Renderer::present(int windowWidth, int windowHeight) {

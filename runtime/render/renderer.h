@@ -13,6 +13,7 @@
 #include "assets/transfer/transfer.h"
 #include "runtime/environment/sg_environment.h"
 #include "runtime/render/render_settings.h"
+#include "runtime/render/shading_tape.h"
 
 namespace chiaro {
 
@@ -45,6 +46,12 @@ class Renderer {
 
   /// Renders one frame into the renderer's own targets.
   void render(const Camera& camera, const RenderSettings& settings);
+
+  /// Renders a frame and returns what its opaque pixels asked. For studies of error: no supersampling, no upsampling and no debug view, else throws Error (usage).
+  ShadingTape record(const Camera& camera, const RenderSettings& settings);
+  /// Renders the same frame with the answers of a tape that record() made with the same arguments; blended surfaces have their own.
+  void replay(const Camera& camera, const RenderSettings& settings, const ShadingTape& answered);
+
   /// Copies the last frame, tone-mapped and sRGB-encoded, to the bound window framebuffer (0) of this size.
   void present(int windowWidth, int windowHeight);
 

@@ -32,13 +32,14 @@ void warnOfLeftOut(const LoadedScene& scene) {
   if (!left.empty()) std::fprintf(stderr, "chiaro-view: warning: %s: %s\n", scene.path.c_str(), left.c_str());
 }
 
-PreparedEnvironment prepareForView(const std::string& nameOrPath, int threads) {
+PreparedEnvironment prepareForView(const std::string& nameOrPath, int prefilter, int threads) {
   PreparedEnvironment prepared;
   prepared.name = nameOrPath;
   const double start = secondsNow();
   const Environment environment = loadEnvironment(nameOrPath);
   prepared.loadSeconds = secondsNow() - start;
   SgEnvironmentSettings settings;
+  settings.finestResolution = prefilter;
   settings.threads = threads;
   prepared.light = prepareEnvironment(environment, settings);
   prepared.exposure = autoExposure(environment);

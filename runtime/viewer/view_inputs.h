@@ -33,8 +33,8 @@ struct PreparedEnvironment {
   double prepareSeconds = 0.0;
 };
 
-/// Loads and prefilters. Throws Error (unreadableInput).
-PreparedEnvironment prepareForView(const std::string& nameOrPath, int threads);
+/// Loads and prefilters; prefilter: SgEnvironmentSettings::finestResolution. Throws Error (unreadableInput).
+PreparedEnvironment prepareForView(const std::string& nameOrPath, int prefilter, int threads);
 
 enum class DroppedKind { scene, environment, other };
 /// What a file dropped on the window is taken for, by its extension (case ignored).

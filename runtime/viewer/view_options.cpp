@@ -121,6 +121,8 @@ void declareViewOptions(CLI::App& app, ViewOptions& options, ViewOptionTexts& te
   app.add_flag("--energy-compensation", options.energyCompensation, "GGX gives back what scatters more than once between its facets")->group(view);
   app.add_option("--lobes", options.lobes, "1, 3, 5, 7 or 9 lobes strung for every material (GGX: three times as many); 0 is the best known")
       ->type_name("N")->capture_default_str()->group(view);
+  app.add_option("--prefilter", options.prefilter, "Texels a side of a face of the sharpest prefiltered environment, a power of two, 16 to 1024")
+      ->type_name("N")->capture_default_str()->group(view);
 
   const std::string files = "Runs that end";
   app.add_flag("--headless", texts.headless, "Draw without a window")->group(files);
@@ -155,6 +157,7 @@ void finishViewOptions(ViewOptions& options, const ViewOptionTexts& texts) {
   options.background = !texts.noBackground;
   options.materials = {texts.roughness, texts.metallic, modelFromOption(texts.model)};
   requireLobes(options.lobes, "--lobes");
+  requireFinestResolution(options.prefilter, "--prefilter");
   options.animation = materialAnimationFromName(texts.animate);
   for (const auto& text : texts.lights) options.lights.push_back(parseLightSpec(text));
   for (const auto& [value, option] : {std::pair{texts.roughness, "--roughness"}, std::pair{texts.metallic, "--metallic"}})

@@ -42,6 +42,7 @@ struct ViewOptions {
   bool background = true;
   bool energyCompensation = false;
   int lobes = 0;                          ///< RenderSettings::lobes
+  int prefilter = 512;                    ///< SgEnvironmentSettings::finestResolution
   DebugView debugView = DebugView::none;
   int upsample = 1;
   UpsampleWeights upsampleWeights = UpsampleWeights::lobe;

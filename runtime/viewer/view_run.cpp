@@ -143,7 +143,7 @@ void viewHeadless(const ViewOptions& options) {
   const LoadedScene scene = loadForView(options.scene, options.materials, options.lights);
   const Camera camera = viewCamera(options, scene.baked.scene);
   gl::HeadlessContext context;
-  const PreparedEnvironment environment = prepareForView(options.environments.front(), options.threads);
+  const PreparedEnvironment environment = prepareForView(options.environments.front(), options.prefilter, options.threads);
   runFrames(options, scene, camera, environment, glFacts(context.platform()), context.debugLog());
 }
 

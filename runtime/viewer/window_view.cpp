@@ -275,7 +275,7 @@ class InteractiveView {
       complain(name + ": " + pendingName_ + " is being prepared: choose again when it is there");
     } else {
       pendingName_ = name;
-      pendingEnvironment_ = std::async(std::launch::async, prepareForView, name, options_.threads);
+      pendingEnvironment_ = std::async(std::launch::async, prepareForView, name, options_.prefilter, options_.threads);
     }
   }
 
@@ -375,7 +375,7 @@ void viewInWindow(const ViewOptions& options) {
   const LoadedScene scene = loadForView(options.scene, options.materials, options.lights);
   const Camera camera = viewCamera(options, scene.baked.scene);
   Window window(options.size, titleOf(options.scene));
-  const PreparedEnvironment environment = prepareForView(options.environments.front(), options.threads);
+  const PreparedEnvironment environment = prepareForView(options.environments.front(), options.prefilter, options.threads);
   PanelState state = panelFor(options, scene);
   runFrames(options, scene, camera, environment, glFacts("window"), window.debugLog(), [&](Renderer& renderer, int) {
     window.pollEvents();

@@ -167,6 +167,16 @@ FN Vec2 ndfMixtureLobe(IN(int) kind, IN(Real) width, IN(int) count, IN(int) inde
   return index == 0 ? lobe : Vec2(Real(0.0), lobe.y);
 }
 
+// ---- where the renderer leaves lobes ------------------------------------------------------------------------------------------------
+
+// Share of the reflection that is the reflectance itself at fixed broad lobes, the rest its own SG lobes: passes over between two perceptual roughnesses
+// sqrt(alpha). Models with fitted lobes keep these further than GGX.
+FN Real roughReflectionShare(IN(int) kind, IN(Real) alpha) {
+  Real from = kind == kGgx ? Real(0.45) : Real(0.5);
+  Real t = clampReal((sqrt(max(alpha, Real(0.0))) - from) / Real(0.15), Real(0.0), Real(1.0));
+  return t * t * (Real(3.0) - Real(2.0) * t);
+}
+
 // ---- elongated lobes: round ones along the long direction (Wang et al. 2009, supplement, eq. 14; ALGORITHMS 2.5) ----------------------
 
 // A round lobe of a string: angle from the middle along the long direction, sharpness, amplitude.

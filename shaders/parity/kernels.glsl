@@ -273,6 +273,7 @@ KERNEL(reflectanceTimesCosine) {
   y[1] = value.y;
   y[2] = value.z;
 }
+KERNEL(roughReflectionShare) { y[0] = roughReflectionShare(int(x.v[0]), x.v[1]); }
 KERNEL(ndfLobes) {
   ReflectanceModel m = modelAt(x);
   Vec2 paper = ndfPaperLobe(m.kind, m.x);

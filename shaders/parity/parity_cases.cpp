@@ -428,6 +428,13 @@ void addModels(Registry& r) {
     push(out, glm::vec3(glm::normalize(2 * glm::dot(wo, wh) * wh - wo)));
   });
   r.add(CHIARO_CASE(ndfLobes, 3, 6, scalars(6), "six models"), [](Generator& g, auto& out) { pushModel(g, out); });
+  r.add(CHIARO_CASE(roughReflectionShare, 2, 1, scalars(1), "six models, alpha 1e-4..1, between the passage's ends"), [](Generator& g, auto& out) {
+    const int kind = static_cast<int>(g.uniform(0, lobe64::kModelCount - 1e-9));
+    out.push_back(static_cast<float>(kind));
+    // Near its zero the share is the square of a difference: there the rounding of alpha alone is all that is left, so the passage starts a hundredth in.
+    const double from = kind == lobe64::kGgx ? 0.45 : 0.5, root = from + g.uniform(0.01, 0.15);
+    out.push_back(static_cast<float>(g.chance(0.2) ? g.pick({1e-4f, 0.01f, 0.1f, 0.2f, 0.5f, 1.0f}) : root * root));
+  });
   r.add(CHIARO_CASE(stringLobes, 2, 20, scalars(20), "sharpness 1e-3..1e8, ratio 1..1e4"), [](Generator& g, auto& out) {
     const double broad = g.logUniform(1e-3, 1e6);
     out.push_back(static_cast<float>(broad * (g.chance(0.1) ? 1.0 : g.logUniform(1, 1e4))));

@@ -6,6 +6,9 @@
 #include "shaders/stage/surface.glsl"
 #include "shaders/lobe/display.glsl"
 
+#ifdef TAPE
+layout(early_fragment_tests) in;  // what is hidden asks nothing
+#endif
 layout(location = 0) out vec4 color;
 
 const int kDebugAlbedo = 1;
@@ -36,7 +39,13 @@ void main() {
   else if (debugView == kDebugVisibility) radiance = vec3(broadVisibility(t, s.ng));
   else if (debugView == kDebugSsdf) radiance = signColor(ssdfAt(t, 2.0 * dot(s.n, s.wo) * s.n - s.wo));
   else {
-    radiance = shade(s, t) + emissionHere(m, s);
+    vec3 emission = emissionHere(m, s);
+    taped(kTapedSurface, s.position, s.alphaT, s.ng);
+    taped(kTapedSurface, s.n, s.alphaB, s.t);
+    taped(kTapedSurface, s.f0, s.f90, s.diffuse);
+    taped(kTapedSurface, emission, 0.0, vec3(0.0));
+    radiance = shade(s, t) + emission;
+    tapeEnd();
   }
   color = vec4(radiance, m.textures.y == 2 ? baseColor.a : 1.0);
 }

@@ -19,6 +19,7 @@
 #include "shaders/lobe/display.glsl"
 #include "shaders/stage/transfer.glsl"
 #include "shaders/stage/environment.glsl"
+#include "shaders/stage/tape.glsl"
 
 #if TERM_VECTORS > 0
 layout(std430, binding = 5) readonly buffer LightVisibilityBuffer { uint lightVisibility[]; };  // light_visibility.comp
@@ -28,12 +29,6 @@ layout(binding = 9) uniform sampler2DArray ggxTable;  // runtime/brdf/reflectanc
 layout(binding = 10) uniform sampler2D albedoTable;
 
 const int kAnisotropicTerms = 3;
-// Perceptual roughness from which the reflection passes from SG lobes to the BRDF at fixed lobes.
-const float kRoughFrom = 0.45;
-const float kRoughTo = 0.6;
-// The same of models with fitted lobes, which serve further.
-const float kModelRoughFrom = 0.5;
-const float kModelRoughTo = 0.65;
 // Lobes broader than this see the vertex's visible fractions instead of the half-space picture of the SSDF.
 const float kBroadFrom = 4.0;
 const float kBroadTo = 16.0;
@@ -85,7 +80,10 @@ float horizonShare(Surface s, vec3 axis, float sharpness) {
 bool shadowed() { return (uint(frame.counts.w) & kFlagShadows) != 0u; }
 bool energyCompensation() { return (uint(frame.counts.w) & kFlagEnergyCompensation) != 0u; }
 
-float fixedVisibility(Transfer t, int j) { return shadowed() ? t.visibility[j >> 2][j & 3] : 1.0; }
+float fixedVisibility(Transfer t, int j) {
+  float stored = shadowed() ? t.visibility[j >> 2][j & 3] : 1.0;
+  return tapedShare(kTapedFixedShare, frame.directions[j].xyz, frame.pyramid.w, stored);
+}
 
 // Visible fraction of a broad lobe about `axis`, from the fixed lobes.
 float broadVisibility(Transfer t, vec3 axis) {
@@ -99,7 +97,7 @@ float broadVisibility(Transfer t, vec3 axis) {
 }
 
 // Visible share of a lobe; `distance` is the SSDF at its axis, `broad` what broadVisibility() says (used where there are no levels).
-float visibleShare(Transfer t, vec3 axis, float sharpness, float distance, float broad) {
+float storedShare(Transfer t, vec3 axis, float sharpness, float distance, float broad) {
   if (!shadowed()) return 1.0;
 #if TERM_VECTORS > 0 && LEVELS > 0
   VisibilitySource source = sourceOf(sharpness);
@@ -111,8 +109,12 @@ float visibleShare(Transfer t, vec3 axis, float sharpness, float distance, float
 #endif
 }
 
+float visibleShare(Transfer t, vec3 axis, float sharpness, float distance, float broad) {
+  return tapedShare(kTapedShare, axis, sharpness, storedShare(t, axis, sharpness, distance, broad));
+}
+
 // SSDF at the axis of an SG light, and the light's visible share.
-float lightShare(Transfer t, int light, float sharpness, out float distance) {
+float storedLightShare(Transfer t, int light, float sharpness, out float distance) {
   distance = kHalfPi;
 #if TERM_VECTORS > 0
   if (!shadowed()) return 1.0;
@@ -128,6 +130,12 @@ float lightShare(Transfer t, int light, float sharpness, out float distance) {
 #else
   return 1.0;
 #endif
+}
+
+float lightShare(Transfer t, int light, float sharpness) {
+  float distance;
+  float stored = storedLightShare(t, light, sharpness, distance);
+  return tapedShare(kTapedShare, frame.sgLights[light].axisSharpness.xyz, sharpness, stored);
 }
 
 // Mean radiance of light `l` alone under a normalised lobe, and the sharpness of their product.
@@ -146,7 +154,7 @@ float reflectance(Surface s, vec3 wi, float alphaT, float alphaB, out float fres
 vec3 lobeRadiance(Surface s, Transfer t, vec3 axis, float sharpness, float broad) {
   float distance = ssdfAt(t, axis);
   float own = visibleShare(t, axis, sharpness, distance, broad);
-  vec3 radiance = environmentMean(axis, sharpness) * own;
+  vec3 radiance = taped(kTapedMean, axis, sharpness, environmentMean(axis, sharpness)) * own;
 #if TERM_VECTORS > 0
   if (shadowed()) {
     for (int l = 0; l < frame.counts.x; ++l) {
@@ -156,14 +164,15 @@ vec3 lobeRadiance(Surface s, Transfer t, vec3 axis, float sharpness, float broad
       // The distance is 1-Lipschitz: between the two known axes it is close to linear.
       float lightSharpness = frame.sgLights[l].axisSharpness.w;
       float lightDistance;
-      lightShare(t, l, lightSharpness, lightDistance);
+      storedLightShare(t, l, lightSharpness, lightDistance);
       float towards = lightSharpness / (sharpness + lightSharpness);
       vec3 between = mix(axis, frame.sgLights[l].axisSharpness.xyz, towards);
       radiance += mean * (visibleShare(t, between, productSharpness, mix(distance, lightDistance, towards), broad) - own);
     }
   }
 #endif
-  return (max(radiance, vec3(0.0)) + lampsUnderLobe(s, t, axis, sharpness)) * horizonShare(s, axis, sharpness);
+  radiance = taped(kTapedLobe, axis, sharpness, max(radiance, vec3(0.0)) * horizonShare(s, axis, sharpness));
+  return radiance + lampsUnderLobe(s, t, axis, sharpness) * horizonShare(s, axis, sharpness);
 }
 
 vec3 diffuseLight(Surface s, Transfer t) {
@@ -193,11 +202,10 @@ vec3 diffuseLight(Surface s, Transfer t) {
     vec4 light = frame.sgLights[l].axisSharpness;
     float cosineMean = clampedCosineMean(dot(s.n, light.xyz), light.w);
     if (cosineMean < 1.0e-5) continue;
-    float lightDistance;
-    float v = lightShare(t, l, light.w, lightDistance) * horizonShare(s, light.xyz, light.w);
+    float v = lightShare(t, l, light.w) * horizonShare(s, light.xyz, light.w);
     irradiance += frame.sgLights[l].amplitude.rgb * (sgUnitIntegral(light.w) * cosineMean * v);
   }
-  return irradiance;
+  return taped(kTapedIrradiance, s.n, 0.0, irradiance);
 }
 
 #if REFLECTANCE_MODELS || LOBES > 0
@@ -233,6 +241,7 @@ vec3 roughReflection(Surface s, Transfer t, vec3 albedo) {
     float fresnel;
     float w = cosineMean * reflectance(s, cosineWeightedAxis(axis, directionSharpness, s.n), s.alphaT, s.alphaB, fresnel);
     vec3 radiance = frame.restRadiance[j].rgb * (fixedVisibility(t, j) * horizonShare(s, axis, directionSharpness));
+    radiance = taped(kTapedRest, axis, directionSharpness, radiance);
     base += radiance * (w * (1.0 - fresnel));
     edge += radiance * (w * fresnel);
     baseWeight += w * (1.0 - fresnel);
@@ -246,8 +255,7 @@ vec3 roughReflection(Surface s, Transfer t, vec3 albedo) {
     if (cosineMean < 1.0e-5) continue;
     float fresnel;
     float f = reflectance(s, cosineWeightedAxis(light.xyz, light.w, s.n), alphaUnderLight(s.alphaT, light.w), alphaUnderLight(s.alphaB, light.w), fresnel);
-    float lightDistance;
-    float v = lightShare(t, l, light.w, lightDistance) * horizonShare(s, light.xyz, light.w);
+    float v = lightShare(t, l, light.w) * horizonShare(s, light.xyz, light.w);
     result += frame.sgLights[l].amplitude.rgb * (sgUnitIntegral(light.w) * cosineMean * f * v) * fresnelColor(s, fresnel);
   }
   return result;
@@ -313,7 +321,7 @@ vec3 ggxReflection(Surface s, Transfer t, vec3 albedo, out float smoothShare) {
   float broad = broadVisibility(t, 2.0 * dot(s.n, s.wo) * s.n - s.wo);
   return stringReflection(s, t, modelOf(kGgx, s.alphaT, s.alphaB), LOBES, albedo.xy, broad);
 #else
-  float rough = smoothstep(kRoughFrom, kRoughTo, sqrt(min(s.alphaT, s.alphaB)));
+  float rough = roughReflectionShare(kGgx, min(s.alphaT, s.alphaB));
   vec3 reflected = vec3(0.0);
   if (rough < 1.0) reflected += (1.0 - rough) * smoothReflection(s, t, albedo);
   if (rough > 0.0) reflected += rough * roughReflection(s, t, albedo);
@@ -366,7 +374,7 @@ vec3 shade(Surface s, Transfer t, out vec3 diffusePart) {
   if (kModelLayers[s.kind] >= 0) {
     ReflectanceModel m = modelOf(s.kind, s.alphaT, s.alphaB);
     vec2 modelTotal = modelAlbedo(s, m);
-    float rough = LOBES > 0 ? 0.0 : smoothstep(kModelRoughFrom, kModelRoughTo, sqrt(min(s.alphaT, s.alphaB)));
+    float rough = LOBES > 0 ? 0.0 : roughReflectionShare(s.kind, min(s.alphaT, s.alphaB));
     smoothShare = 1.0 - rough;
     radiance = vec3(0.0);
     if (rough < 1.0) radiance += (1.0 - rough) * modelReflection(s, t, m, modelTotal);

@@ -217,6 +217,21 @@ void expectSaneAtExtremes(Make make, Evaluate evaluate) {
   EXPECT_GT(lit, 200'000);
 }
 
+TEST(Models, RoughReflectionPassesOverSmoothly) {
+  for (int kind = 0; kind < kModelCount; ++kind) {
+    const double from = kind == kGgx ? .45 : .5, to = from + .15;
+    EXPECT_EQ(roughReflectionShare(kind, from * from * .999), 0.0);
+    EXPECT_NEAR(roughReflectionShare(kind, .25 * (from + to) * (from + to)), .5, 1e-12);
+    EXPECT_EQ(roughReflectionShare(kind, to * to * 1.001), 1.0);
+    // No edge at either end, and never back: the derivative by the root of alpha is that of 3 t^2 - 2 t^3.
+    for (double t = 0.0; t <= 1.0; t += .125) {
+      const double h = 1e-5, at = from + .15 * t;
+      const double slope = (roughReflectionShare(kind, (at + h) * (at + h)) - roughReflectionShare(kind, (at - h) * (at - h))) / (2 * h);
+      EXPECT_NEAR(slope * .15, 6.0 * t * (1.0 - t), 1e-3) << kind << ' ' << t;
+    }
+  }
+}
+
 TEST(Models, AMillionExtremesInDouble) {
   expectSaneAtExtremes<ReflectanceModel, Vec3>([](int kind, double x, double y) { return reflectanceModel(kind, x, y); },
                                                [](const ReflectanceModel& m, const Vec3& f0, const Vec3& wo, const Vec3& wi) { return reflectanceTimesCosine(m, f0, wo, wi); });

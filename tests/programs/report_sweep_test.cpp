@@ -18,6 +18,7 @@
 #include "assets/error.h"
 #include "assets/file.h"
 #include "precompute/report/sweep/pareto.h"
+#include "precompute/report/sweep/sweep.h"
 #include "precompute/report/sweep/sweep_store.h"
 #include "tests/programs/browser.h"
 #include "tests/programs/view_support.h"
@@ -37,10 +38,10 @@ std::string textOf(const std::filesystem::path& path) {
   return {bytes.begin(), bytes.end()};
 }
 
-/// Three coarse bakes, and seven baselines unless `bakesAlone`, in a few seconds.
+/// Three coarse bakes, and seven baselines unless `bakesAlone`, in a few seconds; nothing is drawn.
 std::vector<std::string> quick(const std::string& folder, bool bakesAlone = false) {
   std::vector<std::string> all{"sweep", "builtin:sphere", "--ground", "-o", folder, "--vertices", "4", "--points-inside", "3", "--rays", "64", "--resolution", "16", "--bytes", "8,24"};
-  if (bakesAlone) all.emplace_back("--no-baselines");
+  if (bakesAlone) all.insert(all.end(), {"--no-baselines", "--no-frames"});
   return all;
 }
 
@@ -96,7 +97,9 @@ class FinishedSweep : public testing::Test {
  protected:
   static void SetUpTestSuite() {
     std::filesystem::remove_all("sweep_all");
-    run_ = runProgram("chiaro-report", quick("sweep_all"));
+    auto arguments = quick("sweep_all");
+    arguments.insert(arguments.end(), {"--size", "48x32", "--samples", "8", "--frames", "2", "--lobes", "0,1", "--target-error", "0.03"});
+    run_ = runProgram("chiaro-report", arguments);
   }
   static Finished run_;
 };
@@ -107,9 +110,9 @@ TEST_F(FinishedSweep, WritesEverythingItSays) {
   ASSERT_EQ(run_.code, 0) << run_.err;
   const auto json = nlohmann::json::parse(textOf("sweep_all/sweep.json"));
   EXPECT_EQ(json["program"], "chiaro-report sweep");
-  ASSERT_EQ(json["points"].size(), 2u + 1u + 7u);  // joint, pca, baselines
-  std::vector<double> cost, error;
-  std::vector<bool> front;
+  ASSERT_EQ(json["points"].size(), 2u * (2u + 1u) + 7u);  // with both numbers of lobes: joint, pca; baselines
+  std::vector<double> cost, error, frame, picture;
+  std::vector<bool> front, frontOfFrames;
   for (const auto& point : json["points"]) {
     SCOPED_TRACE(point.dump());
     cost.push_back(point["bytes_per_vertex"]);
@@ -121,15 +124,37 @@ TEST_F(FinishedSweep, WritesEverythingItSays) {
     EXPECT_TRUE(worst > 0.0 && worst < 0.5);
     const bool baked = point["form"] == "joint" || point["form"] == "pca";
     EXPECT_EQ(point["cpu_seconds"].is_number(), baked);
+    EXPECT_EQ(point["frame_ms"].is_number(), baked);
+    EXPECT_EQ(point["picture_rmse"].is_number(), baked);
+    frame.push_back(baked ? point["frame_ms"].get<double>() : kNone);
+    picture.push_back(baked ? point["picture_rmse"].get<double>() : kNone);
+    frontOfFrames.push_back(point["on_front_of_frame_ms"]);
+    if (baked) {
+      EXPECT_GT(frame.back(), 0.0);
+      EXPECT_TRUE(picture.back() > 0.0 && picture.back() < 0.3);
+    }
     // 2 % is what a bake promises of its bytes.
     if (point["form"] == "joint") {
       EXPECT_LE(cost.back(), 1.02 * point["bytes"].get<double>());
     }
   }
   EXPECT_EQ(front, paretoFront(cost, error));
+  EXPECT_EQ(frontOfFrames, paretoFront(frame, picture));
+  for (std::size_t i = 0; i < 6; i += 2) {
+    SCOPED_TRACE(i);
+    EXPECT_EQ(error[i], error[i + 1]) << "one bake, drawn twice";
+    EXPECT_EQ(json["points"][i]["cpu_seconds"], json["points"][i + 1]["cpu_seconds"]);
+    EXPECT_LT(picture[i], picture[i + 1]) << "one lobe is further off";
+  }
+  // Both joint bakes are within .03, the first with fewer bytes; it is then the faster to draw that counts.
+  const std::size_t chosen = json["chosen"];
+  EXPECT_TRUE(chosen < 2);
+  EXPECT_LE(frame[chosen], frame[1 - chosen]);
+  EXPECT_THAT(run_.out, HasSubstr("chiaro-precompute builtin:sphere -o baked.glb --compression joint --resolution 16 --bytes 8"));
+  EXPECT_FALSE(std::filesystem::exists("sweep_all/baked"));
   const std::string csv = textOf("sweep_all/sweep.csv");
-  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 10);
-  EXPECT_THAT(run_.out, HasSubstr("10 points, 0 of them known before"));
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 13);
+  EXPECT_THAT(run_.out, HasSubstr("13 points, 0 of them known before"));
 }
 
 /// Starts a sweep, sends it `signal` as soon as one point is in `store`, and waits: its status.
@@ -186,6 +211,84 @@ TEST(ReportSweep, AnInterruptKeepsWhatIsFinished) {
   EXPECT_FALSE(std::filesystem::exists("sweep_interrupted/index.html"));
 }
 
+/// Of the sweeps above the joint bakes, with so many bytes a vertex; nothing is drawn.
+std::vector<std::string> joint(const std::string& folder, const std::string& bytes, const std::vector<std::string>& more) {
+  std::vector<std::string> all{"sweep", "builtin:sphere", "--ground", "-o", folder, "--vertices", "4", "--points-inside", "3", "--rays", "64", "--resolution", "16", "--compression", "joint", "--no-baselines",
+                               "--no-frames", "--bytes", bytes};
+  all.insert(all.end(), more.begin(), more.end());
+  return all;
+}
+
+TEST_F(FinishedSweep, BakesOfSeveralProcessesAreTheSame) {
+  ASSERT_EQ(run_.code, 0) << run_.err;
+  std::filesystem::remove_all("sweep_jobs");
+  const Finished run = runProgram("chiaro-report", joint("sweep_jobs", "8,24", {"--jobs", "2"}));
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_FALSE(std::filesystem::exists("sweep_jobs/baked"));
+  const auto one = nlohmann::json::parse(textOf("sweep_all/sweep.json"))["points"], several = nlohmann::json::parse(textOf("sweep_jobs/sweep.json"))["points"];
+  ASSERT_EQ(several.size(), 2u);
+  for (std::size_t i = 0; i < 2; ++i)
+    for (const char* figure : {"bytes", "bytes_per_vertex", "mean_abs_at_vertices", "mean_abs_in_triangles"}) EXPECT_EQ(several[i][figure], one[2 * i][figure]) << figure;
+}
+
+TEST(ReportSweep, GoesOnFromBakesThatWait) {
+  // As a process of a sweep with several jobs leaves it, when the sweep is killed before it measures.
+  std::filesystem::remove_all("sweep_waiting");
+  std::filesystem::create_directories("sweep_waiting/baked");
+  ASSERT_EQ(runProgram("chiaro-report", joint("sweep_waiting", "8", {"--bake-point", "0", "--bake-threads", "1"})).code, 0);
+  const auto files = std::filesystem::directory_iterator("sweep_waiting/baked");
+  int count = 0;
+  for (const auto& file : files) {
+    ++count;
+    if (file.path().extension() == ".json") writeFileAtomically(file.path(), std::string_view(R"({"seconds": 1234.5, "cpu_seconds": 4321.5})"));
+  }
+  EXPECT_EQ(count, 2) << "the bake, and how long it took";
+  ASSERT_EQ(runProgram("chiaro-report", joint("sweep_waiting", "8", {})).code, 0);
+  EXPECT_EQ(nlohmann::json::parse(textOf("sweep_waiting/sweep.json"))["points"][0]["cpu_seconds"], 4321.5) << "not baked again";
+  EXPECT_FALSE(std::filesystem::exists("sweep_waiting/baked"));
+}
+
+TEST(ReportSweep, AFailedProcessIsSaidInOneLine) {
+  std::filesystem::remove_all("sweep_failed");
+  std::string command = "ulimit -f 8; exec '" + std::string(std::getenv("CHIARO_BIN_DIR")) + "/chiaro-report'";  // no file of a bake is that small
+  for (const auto& word : joint("sweep_failed", "8", {"--jobs", "2", "-q"})) command += " '" + word + "'";
+  const int status = std::system((command + " 2>failed.txt").c_str());
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 1);
+  const std::string said = textOf("failed.txt");
+  EXPECT_THAT(said, StartsWith("chiaro-report: bake of joint, 16 x 16, "));
+  EXPECT_THAT(said, HasSubstr("ended by signal"));
+  EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 1) << said;
+  EXPECT_FALSE(std::filesystem::exists("sweep_failed/index.html"));
+}
+
+SweepResult drawn(double bytes, double error, double milliseconds, double picture) {
+  SweepResult result{.point = {.bytes = bytes}, .figures = {.bytesPerVertex = bytes, .frameMilliseconds = milliseconds, .pictureRmse = picture}};
+  result.figures.atVertices.fill(error);
+  return result;
+}
+
+TEST(Choice, IsTheCheapestWithinTheTargets) {
+  std::vector<SweepResult> results{drawn(100, 0.01, 9, 0.02), drawn(50, 0.02, 5, 0.03), drawn(20, 0.03, 5, 0.04), drawn(20, 0.03, 4, 0.05)};
+  results.push_back({.point = {.form = SweepForm::haar}, .figures = {.bytesPerVertex = 1, .frameMilliseconds = 1, .pictureRmse = 0}});
+  EXPECT_EQ(choose(results, 0.02, {}), 1u);
+  EXPECT_EQ(choose(results, 0.05, {}), 3u) << "as few bytes, drawn faster";
+  EXPECT_EQ(choose(results, {}, 5.0), 1u) << "the least error of the picture";
+  EXPECT_EQ(choose(results, {}, 100.0), 0u);
+  EXPECT_EQ(choose(results, 0.01, 9.0), 0u);
+  EXPECT_EQ(choose(results, 0.01, 5.0), std::nullopt);
+  EXPECT_EQ(choose({drawn(1, kNone, kNone, kNone)}, 1.0, 1.0), std::nullopt) << "what is not known is not within";
+  EXPECT_EQ(commandsOf({.form = SweepForm::joint, .resolution = 32, .bytes = 36, .weightBits = 8, .lobes = 3, .prefilter = 128}, "a.glb"),
+            "chiaro-precompute a.glb -o baked.glb --compression joint --resolution 32 --bytes 36\nchiaro-view baked.glb --lobes 3 --prefilter 128");
+}
+
+TEST(Jobs, AreAtLeastOneAndAtMostTheThreads) {
+  const std::vector<SweepPoint> points{{.resolution = 64}};
+  EXPECT_EQ(jobsThatFit(points, std::size_t{1} << 40, 8), 1) << "no machine holds two of these";
+  EXPECT_EQ(jobsThatFit(points, 100, 1), 1);
+  EXPECT_LE(jobsThatFit(points, 100, 2), 2);
+}
+
 void expectFailure(const std::vector<std::string>& arguments, int code, const std::string& part) {
   const Finished run = runProgram("chiaro-report", arguments);
   EXPECT_EQ(run.code, code) << run.err;
@@ -201,6 +304,8 @@ TEST(ReportSweep, Errors) {
   expectFailure({"sweep", "builtin:sphere", "-o", "sweep_none", "--resolution", "30"}, 2, "resolution");
   expectFailure({"sweep", "builtin:sphere", "-o", "sweep_none", "--weight-bits", "9"}, 2, "weight bits");
   expectFailure({"sweep", "builtin:sphere", "-o", "sweep_none", "--vertices", "0"}, 2, "--vertices");
+  expectFailure({"sweep", "builtin:sphere", "-o", "sweep_none", "--prefilter", "100"}, 2, "--prefilter");
+  expectFailure({"sweep", "builtin:sphere", "-o", "sweep_none", "--no-frames", "--target-frame-time", "5"}, 2, "--target-frame-time");
   bakeSmallScene("baked.glb");
   expectFailure({"sweep", "baked.glb", "-o", "sweep_none"}, 2, "baked.glb");
   EXPECT_FALSE(std::filesystem::exists("sweep_none")) << "no report of what cannot be read";
@@ -220,6 +325,12 @@ TEST_F(FinishedSweep, PageInABrowser) {
     cost.value = 'cpu_seconds';
     cost.dispatchEvent(new Event('change'));
     root.axis = bytes + ' then ' + Chart.getChart('chart').options.scales.x.title.text;
+    cost.value = 'frame_ms';
+    const measure = document.getElementById('measure');
+    measure.value = '8';
+    measure.dispatchEvent(new Event('change'));
+    const drawn = Chart.getChart('chart');
+    root.drawn = drawn.data.datasets.filter(set => set.label !== 'front').reduce((sum, set) => sum + set.data.length, 0) + ' ' + drawn.options.scales.x.title.text + ' ' + drawn.options.scales.y.title.text;
     const column = index => [...document.querySelectorAll('#points tbody tr')].map(row => Number(row.cells[index].dataset.value));
     const sorted = values => values.every((value, i) => i === 0 || values[i - 1] <= value);
     const head = document.querySelectorAll('#points th button')[3];
@@ -234,7 +345,7 @@ TEST_F(FinishedSweep, PageInABrowser) {
     root.fits = document.documentElement.scrollWidth <= innerWidth;
   )");
   EXPECT_THAT(dom.substr(0, 1000), Not(HasSubstr("data-error")));
-  for (const char* state : {"data-inked=\"true\"", "data-points=\"10\"", "data-axis=\"bytes a vertex then CPU seconds of a bake\"", "data-up=\"true\"", "data-down=\"true\"",
+  for (const char* state : {"data-inked=\"true\"", "data-points=\"13\"", "data-axis=\"bytes a vertex then CPU seconds of a bake\"", "data-drawn=\"6 milliseconds a frame RMSE of the picture\"", "data-up=\"true\"", "data-down=\"true\"",
                             "data-empty=\"-\"", "data-requests=\"0\"", "data-fits=\"true\""})
     EXPECT_THAT(dom.substr(0, 1000), HasSubstr(state));
 }

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "assets/file.h"
+#include "tests/programs/browser.h"
 #include "tests/programs/view_support.h"
 
 namespace chiaro {
@@ -42,7 +43,7 @@ void expectFailure(const Finished& run, int code, const std::string& part) {
 }
 
 TEST(ReportVisibility, WritesEverythingItSays) {
-  const Finished run = report(quick({"builtin:sphere", "--ground", "-o", "signal", "--json", "signal.json"}));
+  const Finished run = report(quick({"builtin:sphere", "--ground", "--figures", "-o", "signal", "--json", "signal.json"}));
   ASSERT_EQ(run.code, 0) << run.err;
   EXPECT_EQ(textOf("signal/visibility.json"), textOf("signal.json"));
   EXPECT_EQ(textOf("signal/visibility.txt"), run.out);
@@ -70,6 +71,29 @@ TEST(ReportVisibility, WritesEverythingItSays) {
   }
   const std::string csv = textOf("signal/visibility.csv");
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 2 * 11);
+
+  std::vector<std::string> ids;
+  for (const auto& figure : scene["figures"]) {
+    ids.push_back(figure["id"]);
+    SCOPED_TRACE(ids.back());
+    EXPECT_EQ(figure["curves"].size(), ids.back() == "product" ? 5u : 3u);
+    for (const auto& curve : figure["curves"])
+      for (const auto& value : curve["y"]) EXPECT_TRUE(value.is_number() && value >= 0.0) << value;
+  }
+  EXPECT_THAT(ids, testing::ElementsAre("product", "terms_vertices_10", "terms_vertices_100", "terms_vertices_1000", "terms_triangles_10", "terms_triangles_100", "terms_triangles_1000"));
+  const std::string figures = textOf("signal/visibility_figures.csv");
+  EXPECT_EQ(std::count(figures.begin(), figures.end(), '\n'), 1 + 5 * 13 + 6 * 3 * 4);
+  if (!chromium()) return;
+  const std::string dom = documentAfter("signal/index.html", R"(
+    const root = document.documentElement.dataset;
+    root.figures = document.querySelectorAll('figure svg').length;
+    const rows = () => [...document.querySelectorAll('#scene0_vertices tbody tr')].map(row => Number(row.cells[1].dataset.value));
+    document.querySelectorAll('#scene0_vertices th button')[1].click();
+    root.sorted = rows().length === 11 && rows().every((value, i, all) => i === 0 || all[i - 1] <= value);
+    root.fits = document.documentElement.scrollWidth <= innerWidth;
+  )");
+  EXPECT_THAT(dom.substr(0, 1000), testing::Not(HasSubstr("data-error")));
+  for (const char* state : {"data-figures=\"7\"", "data-sorted=\"true\"", "data-fits=\"true\""}) EXPECT_THAT(dom.substr(0, 1000), HasSubstr(state));
 }
 
 TEST(ReportVisibility, BakedTransferIsMeasured) {

@@ -12,6 +12,7 @@
 #include "precompute/report/visibility/haar.h"
 #include "precompute/report/visibility/haar_method.h"
 #include "precompute/report/visibility/map_methods.h"
+#include "precompute/report/visibility/product_error.h"
 #include "precompute/report/visibility/sh_method.h"
 #include "precompute/report/visibility/spherical_harmonics.h"
 #include "precompute/report/visibility/visibility_tables.h"
@@ -351,6 +352,46 @@ TEST_F(Methods, EnoughTermsAreTheMapItself) {
     const SurfacePoint point{.vertices = {v, v, v}, .view = viewpoints_[v]};
     // 16-bit weights and half functions; 1e-3 rad is .004 at sharpness 100.
     EXPECT_LE(std::abs(compressed->at(point)(lobe) - exact->at(point)(lobe)), 5e-3) << v;
+  }
+}
+
+/// Says the same of every lobe.
+class ConstantShare : public VisibilityMethod {
+ public:
+  explicit ConstantShare(double share) : share_(share) {}
+  std::string name() const override { return "constant"; }
+  StoredBytes bytes() const override { return {}; }
+  LobeFraction at(const SurfacePoint&) const override {
+    return [this](const Lobe&) { return share_; };
+  }
+
+ private:
+  double share_;
+};
+
+TEST(ProductErrors, OfAHorizonAlone) {
+  const auto scene = sceneWith({floorGrid(2.0f, 30)});
+  const RayScene rays(scene);
+  const auto points = pointsAtVertices(viewpointsOf(scene, rays), 800, 1);
+  const ConstantShare none(0.0), all(1.0);
+  const auto horizon = makeUnoccludedMethod();
+  const auto errors = productErrors(rays, points, {&none, &all, horizon.get()}, 128, 3, 0, {});
+  ASSERT_EQ(errors.size(), 4u);
+  const auto& sharpness = productSharpness();
+  for (std::size_t s = 0; s < sharpness.size(); ++s) {
+    SCOPED_TRACE(sharpness[s]);
+    EXPECT_NEAR(errors[0].inner[s], 1.0, 1e-12) << "all of it is missing";
+    EXPECT_NEAR(errors[0].vector[s], 1.0, 1e-12);
+    // The horizon is a half-space: exact, but for 128 rays, which tell a share to .01.
+    EXPECT_LE(errors[2].inner[s], 4e-4);
+    EXPECT_NEAR(errors[2].vector[s], errors[3].vector[s], 1e-3);
+    EXPECT_EQ(errors[3].inner[s], 0.0);
+    // Nothing hidden: |G - G V|^2 over |G V|^2 is what of G^2, sharpness doubled, is below the horizon over what is above. Axes are uniform above it; of 12800 those about a lobe's width from it count: four standard errors.
+    double above = 0.0;
+    const int steps = 2000;
+    for (int i = 0; i < steps; ++i) above += lobe64::sgHalfSpaceFraction((i + 0.5) / steps, 2.0 * sharpness[s]) / steps;
+    EXPECT_NEAR(errors[1].vector[s], (1.0 - above) / above, 4.0 * std::sqrt(0.15 / std::sqrt(2.0 * sharpness[s]) / 12800.0) / above);
+    EXPECT_LT(errors[3].vector[s], errors[1].vector[s]);
   }
 }
 

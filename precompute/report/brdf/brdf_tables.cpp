@@ -4,9 +4,9 @@
 #include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "precompute/figure/html_text.h"
+#include "precompute/report/page/figures.h"
 #include "precompute/report/brdf/measured_tables.h"
 
 namespace chiaro {
@@ -107,29 +107,11 @@ std::string brdfJson(const BrdfStudy& study, const std::string& version) {
                                  {"lobes", ElongatedError::kCounts},
                                  {"error_75", numbers({e.byCount.begin(), e.byCount.end()})}});
   if (!study.measured.empty()) json["measured"] = measuredJson(study.measured);
-  json["figures"] = Json::array();
-  for (const Figure& figure : study.figures) {
-    Json one{{"id", figure.id}, {"title", figure.title}, {"x", figure.xLabel}, {"y", figure.yLabel}, {"curves", Json::array()}};
-    for (const Curve& curve : figure.curves)
-      one["curves"].push_back({{"name", curve.name}, {"x", numbers(curve.x)}, {"y", numbers(curve.y)}});
-    json["figures"].push_back(std::move(one));
-  }
+  json["figures"] = figuresJson(study.figures);
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-std::string brdfCsv(const BrdfStudy& study) {
-  std::ostringstream csv;
-  csv.precision(9);
-  csv << "figure,curve,x,y\n";
-  for (const Figure& figure : study.figures)
-    for (const Curve& curve : figure.curves)
-      for (std::size_t i = 0; i < curve.x.size(); ++i) {
-        csv << figure.id << ",\"" << curve.name << "\"," << curve.x[i] << ',';
-        if (std::isfinite(curve.y[i])) csv << curve.y[i];
-        csv << '\n';
-      }
-  return csv.str();
-}
+std::string brdfCsv(const BrdfStudy& study) { return figuresCsv(study.figures); }
 
 std::string brdfPage(const BrdfStudy& study, const std::string& version) {
   std::string html =
@@ -143,9 +125,7 @@ std::string brdfPage(const BrdfStudy& study, const std::string& version) {
       "The error is equation (11) of the supplement of Wang et al. 2009: squared, weighted by both cosines, over both "
       "hemispheres, relative to the square of the truth. "
       "Reflectances are without Fresnel.</p>\n<div class=\"row\">\n";
-  for (const Figure& figure : study.figures)
-    html += "<figure id=\"" + figure.id + "\"><h2>" + htmlText(figure.title) + "</h2>\n" + figureSvg(figure) + "<figcaption>" +
-            htmlText(figure.note) + "</figcaption></figure>\n";
+  html += figuresHtml(study.figures);
   html +=
       "</div>\n<h2>Equation (11), distribution, smooth factor and warp together</h2>\n<p class=\"soft\">Views from the normal to "
       "75 degrees unless said. Ours: the nine lobes that a "

@@ -36,11 +36,11 @@ TransferRows::Layout finer(TransferRows::Layout layout) {
 
 }  // namespace
 
-Budget errorBudget(const Scene& scene, const BakeSettings& given, const VisibilitySettings& measure, const ProgressHandler& progress) {
+Budget errorBudget(const Scene& scene, const BakeSettings& given, const VisibilitySettings& measure, BakedScene& baked, const ProgressHandler& progress) {
   const auto settings = resolvedSettings(given);
   const VisibilityStudy study(scene, measure, progress);
   const auto& input = study.input();
-  const auto baked = bakeStage(scene, settings, "bake", progress);
+  baked = bakeStage(scene, settings, "bake", progress);
   const auto& transfer = baked.transfer;
   Budget budget{.vertices = scene.vertexCount(), .triangles = scene.triangleCount(), .bytesPerVertex = 0.0, .functions = static_cast<int>(transfer.clustered.functions.count()),
                 .clusters = static_cast<int>(transfer.clustered.clusters.size()), .truthNoise = study.facts().truthNoise, .worst = {}, .stages = {}};

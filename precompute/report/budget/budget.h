@@ -27,8 +27,8 @@ struct Budget {
 
 /// Bakes in the joint form, and once more without rounding; replaces stages by exact ones one after another: rounding; shared functions and clusters; half the
 /// texel size, stored and traced; maps and the half-space, by lobes traced at the vertices; interpolation, by lobes traced at the point. scene: prepared.
-/// What a stage causes is its error minus the next one's, so all causes and what is left add up to the bake's error. Throws Error.
-Budget errorBudget(const Scene& scene, const BakeSettings& settings, const VisibilitySettings& measure, const ProgressHandler& progress);
+/// What a stage causes is its error minus the next one's, so all causes and what is left add up to the bake's error. baked: becomes the bake as it is. Throws Error.
+Budget errorBudget(const Scene& scene, const BakeSettings& settings, const VisibilitySettings& measure, BakedScene& baked, const ProgressHandler& progress);
 
 /// Error that `stage` of the budget causes.
 ErrorBySharpness causedBy(const Budget& budget, std::size_t stage, ErrorBySharpness BudgetStage::*place);

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "precompute/figure/html_text.h"
+#include "precompute/report/budget/image_tables.h"
 #include "precompute/report/page/page.h"
 #include "precompute/report/page/page_texts.h"
 #include "precompute/report/visibility/lobe_truth.h"
@@ -91,7 +92,8 @@ std::string budgetTable(const BudgetStudy& study) {
     text += "of these are\n";
     for (std::size_t i = 0; i < budget.stages.size(); ++i) text += line(budget.stages[i].cause, causedBy(budget, i, where.place), "%+9.4f");
   }
-  return text + "\n" + line("noise of the truth", budget.truthNoise, "%9.4f");
+  text += "\n" + line("noise of the truth", budget.truthNoise, "%9.4f");
+  return study.pictures ? text + "\n" + imageBudgetTable(*study.pictures) : text;
 }
 
 std::string budgetJson(const BudgetStudy& study, const std::string& version) {
@@ -122,6 +124,14 @@ std::string budgetJson(const BudgetStudy& study, const std::string& version) {
   for (const auto& one : budget.worst)
     json["worst_points"].push_back({{"at_vertex", one.atVertex}, {"vertex", one.vertex}, {"position", {one.position.x, one.position.y, one.position.z}}, {"error", one.error},
                                     {"largest", one.worst}, {"largest_at_sharpness", one.worstSharpness}});
+  json["vertex_error"] = nullptr;
+  json["worst_vertices"] = Json::array();
+  if (study.view) {
+    json["vertex_error"] = {{"mean", study.view->errors.mean}, {"median", study.view->errors.median}, {"percentile_95", study.view->errors.percentile95}};
+    for (const auto& [vertex, at, closeUp] : study.view->worst)
+      json["worst_vertices"].push_back({{"vertex", vertex.vertex}, {"mesh", vertex.mesh}, {"position", {vertex.position.x, vertex.position.y, vertex.position.z}}, {"error", vertex.error}});
+  }
+  json["pictures"] = study.pictures ? imageBudgetJson(*study.pictures, study.drawn) : Json(nullptr);
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
@@ -164,6 +174,11 @@ std::string budgetPage(const BudgetStudy& study, const std::string& version) {
       "fraction of lobes from traced rays, " +
       std::to_string(study.measure.vertices) + " random vertices" + (study.measure.points > 0 ? " and " + std::to_string(study.measure.points) + " points inside triangles" : "") +
       ", 16 axes each.</p>\n<div class=\"row\">\n" + charts + "</div>\n" + tables + worstTable(budget);
+  if (study.view) body += errorViewSection(*study.view);
+  if (study.pictures) {
+    body += imageBudgetSection(*study.pictures, study.drawn);
+    data["pictures"] = imageBudgetChart(*study.pictures);
+  }
   body += "<p class=\"soft\">" + htmlText(study.scene) + (study.ground ? " over a ground" : "") + ", " + std::to_string(budget.vertices) + " vertices, " +
           formatted("%.1f", budget.bytesPerVertex) + " bytes each, " + std::to_string(budget.functions) + " functions, " + std::to_string(budget.clusters) +
           " clusters. chiaro-report " + htmlText(version) + ".</p>\n";

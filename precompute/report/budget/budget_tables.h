@@ -1,9 +1,12 @@
 #pragma once
 /// A budget for people and machines.
 
+#include <optional>
 #include <string>
 
 #include "precompute/report/budget/budget.h"
+#include "precompute/report/budget/error_view.h"
+#include "precompute/report/budget/image_budget.h"
 
 namespace chiaro {
 
@@ -12,6 +15,9 @@ struct BudgetStudy {
   bool ground = false;
   VisibilitySettings measure;
   Budget budget;
+  ImageBudgetSettings drawn;
+  std::optional<ImageBudget> pictures;
+  std::optional<ErrorView> view;
 };
 
 std::string budgetTable(const BudgetStudy& study);

@@ -18,6 +18,15 @@
         options: {animation: false, responsive: true, maintainAspectRatio: false, scales: {x: axis('sharpness of the lobe'), y: axis('mean |error| of the visible fraction')},
                   plugins: {legend: {position: 'bottom', labels: {color: text}}, tooltip: {callbacks: {label: item => `${item.dataset.label}: ${item.raw.toFixed(4)}`}}}}}));
     }
+    if (data.pictures) {
+      const bars = (label, key, colour) => ({label, data: data.pictures.map(cause => cause[key]), backgroundColor: colour});
+      const plain = title => ({...axis(title), stacked: false});
+      charts.push(new Chart(document.getElementById('chart_pictures'), {
+        type: 'bar', data: {labels: data.pictures.map(cause => cause.name),
+                            datasets: [bars('RMSE by this cause, as displayed', 'error', colours[0]), bars('the same, linear', 'linear', colours[1]), bars('RMSE by which it changes the picture', 'change', colours[5])]},
+        options: {indexAxis: 'y', animation: false, responsive: true, maintainAspectRatio: false, scales: {x: plain('RMSE'), y: {grid: {display: false}, ticks: {color: text, autoSkip: false}}},
+                  plugins: {legend: {position: 'bottom', labels: {color: text}}, tooltip: {callbacks: {label: item => `${item.dataset.label}: ${item.raw.toFixed(5)}`}}}}}));
+    }
     document.documentElement.dataset.drawn = charts.length;
   }
 

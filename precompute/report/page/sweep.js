@@ -35,12 +35,12 @@
     datasets.push({label: 'front', data: onFront, type: 'line', stepped: true, pointRadius: 0, pointHitRadius: 0, borderColor: text, borderWidth: 1, pointStyle: 'line'});
     const axis = (title, values) => ({type: 'logarithmic', min: Math.min(...values) / 1.2, max: Math.max(...values) * 1.2, title: {display: true, text: title, color: text}, grid: {color: line},
                             ticks: {color: text, callback: value => /^[125]/.test(value.toExponential()) ? round(value) : ''}});
-    const titles = {bytes_per_vertex: 'bytes a vertex', cpu_seconds: 'CPU seconds of a bake'};
+    const titles = {bytes_per_vertex: 'bytes a vertex', cpu_seconds: 'CPU seconds of a bake', frame_ms: 'milliseconds a frame'};
     if (chart) chart.destroy();
     chart = new Chart(document.getElementById('chart'), {
       type: 'scatter', data: {datasets},
       options: {animation: false, responsive: true, maintainAspectRatio: false,
-                scales: {x: axis(titles[cost], shownPoints.map(point => point.x)), y: axis('mean |error| of the visible fraction', shownPoints.map(point => point.y))},
+                scales: {x: axis(titles[cost], shownPoints.map(point => point.x)), y: axis(chosen.measure.value === String(data.points[0].error.vertices.length - 1) ? 'RMSE of the picture' : 'mean |error| of the visible fraction', shownPoints.map(point => point.y))},
                 plugins: {legend: {position: 'bottom', labels: legend},
                           tooltip: {filter: item => item.dataset.label !== 'front',
                                     callbacks: {label: item => `${item.raw.label}: ${round(item.raw.x)}, error ${item.raw.y.toFixed(4)}`}}}}});

@@ -4,9 +4,8 @@
 #include <cstdio>
 #include <limits>
 #include <optional>
-#include <stdexcept>
+#include <tuple>
 
-#include "precompute/elapsed.h"
 #include "precompute/journal/fingerprint.h"
 #include "precompute/report/visibility/haar_method.h"
 #include "precompute/report/visibility/map_methods.h"
@@ -24,19 +23,6 @@ SweepFigures measured(const VisibilityStudy& study, const VisibilityMethod& meth
   const auto error = study.errorsOf({&method}, progress).front();
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   return {.bytesPerVertex = error.bytesPerVertex, .seconds = kNone, .cpuSeconds = kNone, .atVertices = error.atVertices, .inTriangles = error.inTriangles};
-}
-
-SweepFigures measuredBake(const Scene& scene, const VisibilityStudy& study, const BakeSettings& settings, const ProgressHandler& progress) {
-  BakeReport report;
-  const double cpuBefore = cpuSeconds();
-  const auto baked = bake(scene, settings, report, progress);
-  const double cpu = cpuSeconds() - cpuBefore;
-  if (baked.scene.vertexCount() != scene.vertexCount()) throw std::logic_error("a prepared scene changed when it was baked");
-  const auto method = makeTransferMethod(baked.transfer);
-  auto figures = measured(study, *method, progress);
-  figures.seconds = report.seconds.total;
-  figures.cpuSeconds = cpu;
-  return figures;
 }
 
 std::unique_ptr<VisibilityMethod> makeBaseline(const SweepPoint& point, const VisibilityStudy& study) {
@@ -71,6 +57,7 @@ BakeSettings bakeSettingsOf(const SweepPoint& point, const VisibilitySettings& m
                         .threads = measure.threads};
   if (point.weightBits != 0) settings.weightBits = point.weightBits;
   settings.functionBits = point.functionBits;
+  settings.clusters = point.clusters;
   return settings;
 }
 
@@ -82,11 +69,12 @@ std::string sweepKey(const Scene& scene, const VisibilitySettings& measure, cons
   return text;
 }
 
-std::vector<SweepResult> sweep(const Scene& scene, const std::vector<SweepPoint>& points, const VisibilitySettings& measure, SweepStore& store,
-                               SweepScene& facts, const ProgressHandler& progress) {
+std::vector<SweepResult> sweep(const Scene& scene, const std::vector<SweepPoint>& points, const VisibilitySettings& measure, SweepStore& store, SweepBakes& bakes,
+                               SweepPictures* pictures, SweepScene& facts, const ProgressHandler& progress) {
   facts = {.vertices = scene.vertexCount(), .triangles = scene.triangleCount(), .resumed = 0};
   std::vector<SweepResult> results;
   std::optional<VisibilityStudy> study;  // where all is known nothing is traced
+  std::optional<std::pair<SweepPoint, SweepFigures>> baked;  // the bake that was measured last, and what all its points share
   for (std::size_t i = 0; i < points.size(); ++i) {
     const auto& point = points[i];
     if (const auto known = store.find(point)) {
@@ -103,7 +91,16 @@ std::vector<SweepResult> sweep(const Scene& scene, const std::vector<SweepPoint>
     };
     SweepResult result{.point = point, .figures = {}};
     if (point.isBake()) {
-      result.figures = measuredBake(scene, *study, bakeSettingsOf(point, measure), stage);
+      if (!baked || !(baked->first == bakeOf(point))) {
+        const auto& made = bakes.get(point, stage);
+        auto figures = measured(*study, *makeTransferMethod(made.baked.transfer), stage);
+        figures.seconds = made.seconds;
+        figures.cpuSeconds = made.cpuSeconds;
+        baked.emplace(bakeOf(point), figures);
+        if (pictures != nullptr) pictures->open(made.baked);
+      }
+      result.figures = baked->second;
+      if (pictures != nullptr) pictures->measure(point, result.figures, stage);
     } else {
       stage("visibility", 0.0);
       const auto method = makeBaseline(point, *study);
@@ -111,8 +108,47 @@ std::vector<SweepResult> sweep(const Scene& scene, const std::vector<SweepPoint>
     }
     store.append(result);
     results.push_back(result);
+    if (point.isBake() && (i + 1 == points.size() || !(bakeOf(points[i + 1]) == bakeOf(point)))) bakes.forget(point);
   }
   return results;
+}
+
+std::optional<std::size_t> choose(const std::vector<SweepResult>& results, std::optional<double> targetError, std::optional<double> targetFrameMilliseconds) {
+  std::optional<std::size_t> best;
+  const auto cost = [&](const SweepResult& result) {
+    const auto& figures = result.figures;
+    return std::tuple(targetError ? figures.bytesPerVertex : figures.pictureRmse, figures.frameMilliseconds, figures.bytesPerVertex);
+  };
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    const auto& figures = results[i].figures;
+    if (!results[i].point.isBake()) continue;
+    if (targetError && !(SweepFigures::worst(figures.atVertices) <= *targetError)) continue;
+    if (targetFrameMilliseconds && !(figures.frameMilliseconds <= *targetFrameMilliseconds)) continue;
+    if (!best || cost(results[i]) < cost(results[*best])) best = i;
+  }
+  return best;
+}
+
+std::string commandsOf(const SweepPoint& point, const std::string& scene) {
+  const auto number = [](double value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%g", value);
+    return std::string(text);
+  };
+  std::string text = "chiaro-precompute " + scene + " -o baked.glb --compression " + nameOf(point.form) + " --resolution " + number(point.resolution);
+  const auto add = [&](const char* option, double value, double usual) {
+    if (value != usual) text += std::string(" ") + option + " " + number(value);
+  };
+  add("--sample-resolution", point.samplingResolution, 0);
+  add("--terms", point.terms, 0);
+  add("--bytes", point.bytes, 0);
+  add("--weight-bits", point.weightBits == 0 ? 8 : point.weightBits, 8);
+  add("--function-bits", point.functionBits, 0);
+  add("--clusters", point.clusters, 0);
+  text += "\nchiaro-view baked.glb";
+  add("--lobes", point.lobes, 0);
+  add("--prefilter", point.prefilter == 0 ? 512 : point.prefilter, 512);
+  return text;
 }
 
 }  // namespace chiaro

@@ -4,6 +4,8 @@
 #include <algorithm>
 
 #include "assets/error.h"
+#include "assets/scene/material_override.h"
+#include "precompute/report/report_options.h"
 #include "precompute/report/sweep/sweep.h"
 
 namespace chiaro {
@@ -20,13 +22,13 @@ void addOnce(std::vector<SweepPoint>& points, const SweepPoint& point) {
 
 /// What a form has no use for is zero, so that equal work is one point.
 SweepPoint normalised(SweepPoint point) {
-  if (point.form == SweepForm::pca) point.samplingResolution = 0, point.bytes = 0.0, point.weightBits = 0, point.functionBits = 0;
+  if (point.form == SweepForm::pca) point.samplingResolution = 0, point.bytes = 0.0, point.weightBits = 0, point.functionBits = 0, point.clusters = 0;
   return point;
 }
 
 }  // namespace
 
-void declareSweepOptions(CLI::App& app, SweepOptions& options) {
+void declareSweepOptions(CLI::App& app, SweepOptions& options, SweepOptionTexts& texts) {
   auto& measure = options.measure;
   const auto one = [](CLI::Option* option) { option->type_name("N")->capture_default_str(); };
   const auto many = [](CLI::Option* option) { option->delimiter(',')->type_name("N,N...")->capture_default_str(); };
@@ -44,6 +46,20 @@ void declareSweepOptions(CLI::App& app, SweepOptions& options) {
   many(app.add_option("--bytes", options.bytes, "Bytes a vertex that rounding has to fit, 0 as a bake chooses, below 0 no limit; not for pca"));
   many(app.add_option("--weight-bits", options.weightBits, "Bits of a weight, 8 or 16; not for pca"));
   many(app.add_option("--function-bits", options.functionBits, "Bits of a function's values, 16, 8, 4, or 0 as the bytes allow; not for pca"));
+  many(app.add_option("--clusters", options.clusters, "Clusters, 0 as a bake chooses; not for pca"));
+  many(app.add_option("--lobes", options.lobes, "Lobes that frames are drawn with, as for chiaro-view; 0 is the best known"));
+  many(app.add_option("--prefilter", options.prefilters, "Texels a side of a face of the sharpest prefiltered environment, a power of two, 16 to 1024"));
+  app.add_option("--target-error", options.targetError, "Choose the fewest bytes whose error is at most this")->type_name("E");
+  app.add_option("--target-frame-time", options.targetFrameTime, "Choose among what draws a frame in at most so many milliseconds here")->type_name("MS");
+  app.add_option("-e,--environment", options.pictures.environment, "Light of the frames: a built-in name, or an .hdr or .exr file")->type_name("NAME|FILE")->capture_default_str();
+  app.add_option("--size", texts.size, "Size of the frames in pixels")->type_name("WxH")->capture_default_str();
+  app.add_option("--camera", texts.camera, "auto, an index or name of a camera in the file, or eye=X,Y,Z,target=X,Y,Z,fov-deg=D")->type_name("SPEC")->capture_default_str();
+  one(app.add_option("--samples", options.pictures.samples, "Sample pairs a pixel of the reference that frames are compared with"));
+  one(app.add_option("--frames", options.pictures.frames, "Frames to time, after one that is not counted"));
+  app.add_flag("--no-frames", options.noFrames, "Draw nothing: no frame times, no pictures' errors, no OpenGL");
+  one(app.add_option("--jobs", options.jobs, "Bakes at a time, 0 as many as memory holds; never changes the errors"));
+  app.add_option("--bake-point", options.bakePoint)->group("");
+  app.add_option("--bake-threads", options.bakeThreads)->group("");
   app.add_flag("!--no-baselines", options.baselines, "Leave out the paper's setting, spherical harmonics and wavelets");
   app.add_flag("--ground", options.ground, "Put a square of 1600 vertices, three diagonals wide, under the scene");
   one(app.add_option("--vertices", measure.vertices, "Random vertices to measure at"));
@@ -54,13 +70,25 @@ void declareSweepOptions(CLI::App& app, SweepOptions& options) {
   app.add_flag("-q,--quiet", options.quiet, "Print nothing but errors");
 }
 
-void finishSweepOptions(const SweepOptions& options) {
+void finishSweepOptions(SweepOptions& options, const SweepOptionTexts& texts) {
   const auto& measure = options.measure;
   requireRange("--vertices", measure.vertices, 1, 1 << 20);
   requireRange("--points-inside", measure.points, 0, 1 << 20);
   requireRange("--rays", measure.rays, 32, 1 << 20);
   requireRange("--threads", measure.threads, 0, 1024);
   for (const int terms : options.terms) requireRange("--terms", terms, 0, 256);
+  requireRange("--jobs", options.jobs, 0, 1024);
+  requireRange("--samples", options.pictures.samples, 4, 1 << 20);
+  requireRange("--frames", options.pictures.frames, 1, 1000);
+  for (const int lobes : options.lobes) requireLobes(lobes, "--lobes");
+  for (const int texels : options.prefilters) requireFinestResolution(texels, "--prefilter");
+  for (const auto& [option, value] : {std::pair{"--target-error", options.targetError}, std::pair{"--target-frame-time", options.targetFrameTime}})
+    if (value && !(*value > 0.0)) throw usageError(option, "must be above 0", "give a number such as 0.02");
+  if (options.noFrames && options.targetFrameTime) throw usageError("--target-frame-time", "needs frames", "leave out --no-frames");
+  options.pictures.size = sizeFrom(texts.size);
+  options.pictures.camera = parseCameraSpec(texts.camera);
+  options.pictures.threads = measure.threads;
+  if (!options.noFrames) requireEnvironment(options.pictures.environment);
   // A wrong value is found before hours of the others.
   for (const auto& point : pointsOf(options))
     if (point.isBake()) resolvedSettings(bakeSettingsOf(point, measure));
@@ -75,7 +103,10 @@ std::vector<SweepPoint> pointsOf(const SweepOptions& options) {
           for (const double bytes : options.bytes)
             for (const int weightBits : options.weightBits)
               for (const int functionBits : options.functionBits)
-                addOnce(points, normalised({form, resolution, sampling, terms, bytes, weightBits, functionBits}));
+                for (const int clusters : options.clusters)
+                  for (const int lobes : options.noFrames ? std::vector{0} : options.lobes)
+                    for (const int prefilter : options.noFrames ? std::vector{0} : options.prefilters)
+                      addOnce(points, normalised({form, resolution, sampling, terms, bytes, weightBits, functionBits, clusters, lobes, prefilter}));
   if (!options.baselines) return points;
   const auto baseline = [&](SweepForm form, int terms) {
     points.push_back({.form = form, .resolution = 64, .samplingResolution = 0, .terms = terms, .bytes = 0.0, .weightBits = 0, .functionBits = 0});

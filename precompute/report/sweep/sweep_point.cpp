@@ -6,6 +6,8 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "runtime/environment/sg_environment.h"
+
 namespace chiaro {
 namespace {
 
@@ -52,11 +54,15 @@ std::string labelOf(const SweepPoint& point) {
   std::string text = std::string(nameOf(point.form)) + ", " + count(point.resolution) + " x " + count(point.resolution);
   if (point.samplingResolution != 0) text += " of " + count(point.samplingResolution);
   if (point.terms != 0) text += ", " + count(point.terms) + " terms";
-  if (point.form == SweepForm::pca) return text;
+  std::string drawn;
+  if (point.lobes != 0) drawn += ", drawn with " + count(point.lobes) + (point.lobes == 1 ? " lobe" : " lobes");
+  if (point.prefilter != 0 && point.prefilter != SgEnvironmentSettings{}.finestResolution) drawn += ", light of " + count(point.prefilter) + " texels";
+  if (point.form == SweepForm::pca) return text + drawn;
   text += point.bytes > 0.0 ? ", " + count(point.bytes) + " bytes" : point.bytes < 0.0 ? ", no limit" : ", bytes by default";
   if (point.weightBits != 8) text += ", weights of " + count(point.weightBits) + " bits";
   if (point.functionBits != 0) text += ", functions of " + count(point.functionBits) + " bits";
-  return text;
+  if (point.clusters != 0) text += ", " + count(point.clusters) + " clusters";
+  return text + drawn;
 }
 
 std::string resultLine(const std::string& key, const SweepResult& result) {
@@ -69,11 +75,16 @@ std::string resultLine(const std::string& key, const SweepResult& result) {
               {"bytes", point.bytes},
               {"weight_bits", point.weightBits},
               {"function_bits", point.functionBits},
+              {"clusters", point.clusters},
+              {"lobes", point.lobes},
+              {"prefilter", point.prefilter},
               {"bytes_per_vertex", number(figures.bytesPerVertex)},
               {"seconds", number(figures.seconds)},
               {"cpu_seconds", number(figures.cpuSeconds)},
               {"mean_abs_at_vertices", numbers(figures.atVertices)},
-              {"mean_abs_in_triangles", numbers(figures.inTriangles)}}
+              {"mean_abs_in_triangles", numbers(figures.inTriangles)},
+              {"frame_ms", number(figures.frameMilliseconds)},
+              {"picture_rmse", number(figures.pictureRmse)}}
       .dump();
 }
 
@@ -93,11 +104,16 @@ std::optional<SweepResult> parseResultLine(const std::string& line, const std::s
     point.bytes = json.at("bytes");
     point.weightBits = json.at("weight_bits");
     point.functionBits = json.at("function_bits");
+    point.clusters = json.at("clusters");
+    point.lobes = json.at("lobes");
+    point.prefilter = json.at("prefilter");
     figures.bytesPerVertex = number(json.at("bytes_per_vertex"));
     figures.seconds = number(json.at("seconds"));
     figures.cpuSeconds = number(json.at("cpu_seconds"));
     figures.atVertices = numbers(json.at("mean_abs_at_vertices"));
     figures.inTriangles = numbers(json.at("mean_abs_in_triangles"));
+    figures.frameMilliseconds = number(json.at("frame_ms"));
+    figures.pictureRmse = number(json.at("picture_rmse"));
     return result;
   } catch (const Json::exception&) {
     return {};

@@ -1,6 +1,7 @@
 #pragma once
 /// The figures of a sweep for people and machines.
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,13 +14,19 @@ struct SweepStudy {
   bool ground = false;
   SweepScene facts;
   VisibilitySettings measure;
+  SweepPictureSettings drawn;
+  std::string glRenderer{};  ///< empty: nothing was drawn
+  std::optional<double> targetError, targetFrameTime;
   std::vector<SweepResult> results;
+  std::optional<std::size_t> chosen{};  ///< choose()
+
+  bool targets() const { return targetError || targetFrameTime; }
 };
 
-/// Figures that a front can be made over. measure: an index into kLobeSharpness, or kWorst: the largest of all.
-inline constexpr std::size_t kWorst = kLobeSharpness.size();
+/// Figures that a front can be made over. measure: an index into kLobeSharpness, kWorst: the largest of all, or kPicture: of the picture, wherever.
+inline constexpr std::size_t kWorst = kLobeSharpness.size(), kPicture = kWorst + 1;
 enum class SweepPlace { vertices, triangles };
-enum class SweepCost { bytesPerVertex, cpuSeconds };
+enum class SweepCost { bytesPerVertex, cpuSeconds, frameMilliseconds };
 double errorOf(const SweepResult& result, SweepPlace place, std::size_t measure);
 double costOf(const SweepResult& result, SweepCost cost);
 

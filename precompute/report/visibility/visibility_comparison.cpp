@@ -18,9 +18,7 @@ std::vector<std::unique_ptr<VisibilityMethod>> baselineMethods(const VisibilityI
   return methods;
 }
 
-VisibilityComparison compareVisibility(const Scene& scene, const MethodMaker& makeMethods, const VisibilitySettings& settings,
-                                       const ProgressHandler& progress) {
-  const VisibilityStudy study(scene, settings, progress);
+VisibilityComparison compareVisibility(const VisibilityStudy& study, const MethodMaker& makeMethods, const ProgressHandler& progress) {
   if (progress) progress("methods", 0.0);
   const auto methods = makeMethods(study.input());
   std::vector<const VisibilityMethod*> asked;
@@ -28,6 +26,10 @@ VisibilityComparison compareVisibility(const Scene& scene, const MethodMaker& ma
   auto result = study.facts();
   result.methods = study.errorsOf(asked, progress);
   return result;
+}
+
+VisibilityComparison compareVisibility(const Scene& scene, const MethodMaker& makeMethods, const VisibilitySettings& settings, const ProgressHandler& progress) {
+  return compareVisibility(VisibilityStudy(scene, settings, progress), makeMethods, progress);
 }
 
 }  // namespace chiaro

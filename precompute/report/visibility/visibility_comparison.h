@@ -42,6 +42,11 @@ using MethodMaker = std::function<std::vector<std::unique_ptr<VisibilityMethod>>
 /// SH 25, 49, 100; Haar 24 (as many bytes as 48 weights), 48, 96; PCA of visibility and of both SSDFs; the SSDF of occluders uncompressed; no shadows.
 std::vector<std::unique_ptr<VisibilityMethod>> baselineMethods(const VisibilityInput& input);
 
+class VisibilityStudy;
+
+/// The study's points, with the errors of all methods. Same figures for any number of threads. Throws Error.
+VisibilityComparison compareVisibility(const VisibilityStudy& study, const MethodMaker& methods, const ProgressHandler& progress = {});
+
 /// scene: as prepareScene() leaves it. At every point and axis the truth is the share of `rays` directions of the lobe that are above
 /// the point's own normal and meet nothing. Every estimate is clamped to [0, 1]. Same figures for any number of threads. Throws Error.
 VisibilityComparison compareVisibility(const Scene& scene, const MethodMaker& methods, const VisibilitySettings& settings,

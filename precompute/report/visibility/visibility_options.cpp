@@ -22,7 +22,7 @@ void declareVisibilityOptions(CLI::App& app, VisibilityOptions& options) {
   app.add_option("scenes", options.scenes, "Scene files, baked or not, or builtin:NAME; a baked one is measured too")
       ->required()
       ->type_name("SCENE");
-  app.add_option("-o,--output", options.output, "Folder for visibility.txt, visibility.json and visibility.csv")
+  app.add_option("-o,--output", options.output, "Folder for index.html, visibility.txt, visibility.json and visibility.csv")
       ->type_name("DIR");
   app.add_option("--json", options.json, "Write the figures here")->type_name("FILE");
   shown(app.add_option("--vertices", settings.vertices, "Random vertices to measure at"));
@@ -35,6 +35,7 @@ void declareVisibilityOptions(CLI::App& app, VisibilityOptions& options) {
                "Put a square of 1600 vertices, three diagonals wide, under scenes that are not baked");
   app.add_option("--bake", options.bake, "Bake scenes that are not baked with so many bytes a vertex (0: as a bake chooses), else with default settings, and measure that; may be repeated")
       ->type_name("BYTES");
+  app.add_flag("--figures", options.figures, "Also figures 7 and 10 of the supplement of Wang et al. 2009: errors of products with a signed distance, and by the number of terms");
   shown(app.add_option("--seed", settings.seed, "Of the random choices"));
   shown(app.add_option("--threads", settings.threads, "CPU threads, 0 is all; never changes the figures"));
   app.add_flag("-q,--quiet", options.quiet, "Print nothing but errors");

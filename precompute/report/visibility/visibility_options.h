@@ -20,6 +20,7 @@ struct VisibilityOptions {
   VisibilitySettings settings;
   std::vector<double> bake;         ///< bytes a vertex, one bake each
   bool ground = false;
+  bool figures = false;             ///< supplementFigures() too
   bool quiet = false;
 };
 

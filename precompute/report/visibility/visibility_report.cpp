@@ -14,7 +14,9 @@
 #include "precompute/report/prepared_scene.h"
 #include "precompute/report/visibility/transfer_method.h"
 #include "precompute/report/visibility/visibility_options.h"
-#include "precompute/report/visibility/visibility_tables.h"
+#include "precompute/report/visibility/supplement_figures.h"
+#include "precompute/report/visibility/visibility_page.h"
+#include "precompute/report/visibility/visibility_study.h"
 
 namespace chiaro {
 namespace {
@@ -24,6 +26,8 @@ constexpr const char* kExamples = R"(Examples:
   chiaro-report visibility bunny.ply --ground -o signal
   chiaro-report visibility bunny.ply --bake 104 --bake 400
       joint bakes of so many bytes a vertex beside the others
+  chiaro-report visibility builtin:ornament --figures -o signal
+      with the supplement's figures 7 and 10; open signal/index.html
   chiaro-report visibility baked.glb --json signal.json
       the stored transfer beside the others
 
@@ -75,10 +79,13 @@ SceneComparison compareScene(const std::string& name, const VisibilityOptions& o
   result.ground = options.ground;
   namingScene(name, [&] {
     if (input.transfers.empty()) bakeInto(input, options, bar);
-    result.comparison = compareVisibility(input.scene, methods, options.settings, [&](const std::string& stage, double done) {
+    const ProgressHandler progress = [&](const std::string& stage, double done) {
       throwIfInterrupted();
       bar.update(stage, done);
-    });
+    };
+    const VisibilityStudy study(input.scene, options.settings, progress);
+    result.comparison = compareVisibility(study, methods, progress);
+    if (options.figures) result.figures = supplementFigures(study, options.settings, progress);
   });
   bar.clear();
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -114,6 +121,8 @@ ExitCode visibilityReport(int argc, const char* const* argv) {
     writeFileAtomically(options.output / "visibility.txt", tables);
     writeFileAtomically(options.output / "visibility.json", json);
     writeFileAtomically(options.output / "visibility.csv", visibilityCsv(scenes));
+    if (options.figures) writeFileAtomically(options.output / "visibility_figures.csv", visibilityFiguresCsv(scenes));
+    writeFileAtomically(options.output / "index.html", visibilityPage(scenes, options.settings, CHIARO_VERSION));
   }
   if (!options.json.empty()) writeFileAtomically(options.json, json);
   return ExitCode::done;

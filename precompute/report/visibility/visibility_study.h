@@ -24,6 +24,8 @@ class VisibilityStudy {
 
   /// What methods are made from; of VisibilitySettings::resolution and ::terms, which a copy may change.
   const VisibilityInput& input() const { return input_; }
+  /// Those at vertices first.
+  const std::vector<SurfacePoint>& points() const { return truth_.points(); }
   std::vector<MethodError> errorsOf(const std::vector<const VisibilityMethod*>& methods, const ProgressHandler& progress) const;
   /// At most `count` points, the one with the largest PointError::error first.
   std::vector<PointError> worstPoints(const VisibilityMethod& method, std::size_t count, const ProgressHandler& progress) const;

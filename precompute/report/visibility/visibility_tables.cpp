@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "precompute/report/page/figures.h"
 #include "precompute/report/visibility/lobe_truth.h"
 
 namespace chiaro {
@@ -99,6 +100,7 @@ std::string visibilityJson(const std::vector<SceneComparison>& scenes, const Vis
                                 {"bytes_shared", number(method.bytes.shared)},
                                 {"mean_abs_at_vertices", bySharpness(method.atVertices)},
                                 {"mean_abs_in_triangles", bySharpness(method.inTriangles)}});
+    one["figures"] = figuresJson(scene.figures);
     json["scenes"].push_back(std::move(one));
   }
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
@@ -126,6 +128,19 @@ std::string visibilityCsv(const std::vector<SceneComparison>& scenes) {
       }
     }
   return csv.str();
+}
+
+std::string visibilityFiguresCsv(const std::vector<SceneComparison>& scenes) {
+  std::string csv;
+  for (const auto& scene : scenes) {
+    if (scene.figures.empty()) continue;
+    std::istringstream lines(figuresCsv(scene.figures));
+    std::string line;
+    std::getline(lines, line);
+    if (csv.empty()) csv = "scene,ground," + line + "\n";
+    while (std::getline(lines, line)) csv += quoted(scene.scene) + "," + (scene.ground ? "1" : "0") + "," + line + "\n";
+  }
+  return csv;
 }
 
 }  // namespace chiaro

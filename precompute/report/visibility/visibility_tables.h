@@ -2,7 +2,9 @@
 /// The figures of the comparison for people and machines.
 
 #include <string>
+#include <vector>
 
+#include "precompute/figure/figure.h"
 #include "precompute/report/visibility/visibility_comparison.h"
 
 namespace chiaro {
@@ -12,6 +14,7 @@ struct SceneComparison {
   bool ground = false;
   double seconds = 0.0;
   VisibilityComparison comparison;
+  std::vector<Figure> figures;  ///< supplementFigures(), where asked for
 };
 
 /// Two tables of methods by sharpness: at vertices, inside triangles.
@@ -23,5 +26,8 @@ std::string visibilityJson(const std::vector<SceneComparison>& scenes, const Vis
 
 /// One line for each scene, place and method.
 std::string visibilityCsv(const std::vector<SceneComparison>& scenes);
+
+/// The same lines as figuresCsv(), after the scene; empty where no figure was asked for.
+std::string visibilityFiguresCsv(const std::vector<SceneComparison>& scenes);
 
 }  // namespace chiaro
