@@ -114,6 +114,7 @@ class MaterialReader {
       readAnisotropy(source, material);
       readSpecular(source, material);
       readClearcoat(source, material);
+      readSheen(source, material);
       readReflectance(source, material);
       scene_.materials.push_back(std::move(material));
     }
@@ -235,6 +236,17 @@ class MaterialReader {
     material.clearcoatRoughnessTexture = textureOf(*value, "clearcoatRoughnessTexture", material.clearcoatRoughnessTransform);
     if (value->Has("clearcoatNormalTexture"))
       warnings_.say(label_ + " has a clearcoatNormalTexture, which is left out: its coat follows the mesh");
+  }
+
+  void readSheen(const tinygltf::Material& source, Material& material) {
+    const auto* value = extension(source, "KHR_materials_sheen");
+    if (value == nullptr) return;
+    if (const auto color = numbers<3>(*value, "sheenColorFactor"))
+      for (int c = 0; c < 3; ++c) material.sheenColorFactor[c] = within((*color)[static_cast<std::size_t>(c)], 0, 1, "sheenColorFactor");
+    if (material.sheenColorFactor == glm::vec3(0.0f)) return;
+    material.sheenColorTexture = textureOf(*value, "sheenColorTexture", material.sheenColorTransform);
+    material.sheenRoughness = within(gltfNumber(*value, "sheenRoughnessFactor", 0.0), 0, 1, "sheenRoughnessFactor");
+    material.sheenRoughnessTexture = textureOf(*value, "sheenRoughnessTexture", material.sheenRoughnessTransform);
   }
 
   void readReflectance(const tinygltf::Material& source, Material& material) {

@@ -23,6 +23,7 @@ constexpr int kDeepestNode = 512;
 const std::set<std::string> kSupported{"KHR_lights_punctual",   "KHR_materials_emissive_strength", "KHR_materials_anisotropy",
                                        "KHR_mesh_quantization", "KHR_texture_transform",           "CHIARO_radiance_transfer",
                                        "KHR_materials_ior",     "KHR_materials_specular",          "KHR_materials_clearcoat",
+                                       "KHR_materials_sheen",
                                        "CHIARO_materials_reflectance", "CHIARO_lights_area"};
 
 std::string named(const std::string& kind, int index, const std::string& name) {

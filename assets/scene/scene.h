@@ -48,7 +48,7 @@ struct TextureTransform {
 
 enum class AlphaMode { opaque, mask, blend };
 
-/// glTF 2.0 metallic-roughness material with KHR_materials_anisotropy, _specular, _ior, _clearcoat and CHIARO_materials_reflectance; a texture
+/// glTF 2.0 metallic-roughness material with KHR_materials_anisotropy, _specular, _ior, _clearcoat, _sheen and CHIARO_materials_reflectance; a texture
 /// is an index into Scene::textures and reads TEXCOORD_0 through the transform beside it. Colour textures are sRGB-encoded, the others linear.
 struct Material {
   std::string name;
@@ -89,6 +89,12 @@ struct Material {
   float clearcoatRoughness = 0.0f;       ///< perceptual
   int clearcoatRoughnessTexture = kNone; ///< G
   TextureTransform clearcoatRoughnessTransform;
+  glm::vec3 sheenColorFactor{0.0f};      ///< 0..1: fuzz over the base, under the coat; 0 is none
+  int sheenColorTexture = kNone;         ///< RGB
+  TextureTransform sheenColorTransform;
+  float sheenRoughness = 0.0f;           ///< perceptual
+  int sheenRoughnessTexture = kNone;     ///< A
+  TextureTransform sheenRoughnessTransform;
 
   Reflectance reflectance = Reflectance::ggx;
   std::optional<glm::vec2> reflectanceWidth;  ///< along tangent and bitangent, widths or exponents; absent: see reflectanceAlpha()

@@ -101,6 +101,7 @@ class SceneWriter {
       writeAnisotropy(material, out);
       writeSpecular(material, out);
       writeClearcoat(material, out);
+      writeSheen(material, out);
       writeReflectance(material, out);
       push(json_, "materials", std::move(out));
     }
@@ -244,6 +245,16 @@ class SceneWriter {
     addTexture(extension, "clearcoatTexture", material.clearcoatTexture, material.clearcoatTransform);
     extension["clearcoatRoughnessFactor"] = material.clearcoatRoughness;
     addTexture(extension, "clearcoatRoughnessTexture", material.clearcoatRoughnessTexture, material.clearcoatRoughnessTransform);
+  }
+
+  void writeSheen(const Material& material, Json& out) {
+    if (material.sheenColorFactor == glm::vec3(0.0f)) return;  // and with it everything else of a sheen
+    use("KHR_materials_sheen");
+    auto& extension = out["extensions"]["KHR_materials_sheen"];
+    extension["sheenColorFactor"] = list(material.sheenColorFactor);
+    addTexture(extension, "sheenColorTexture", material.sheenColorTexture, material.sheenColorTransform);
+    extension["sheenRoughnessFactor"] = material.sheenRoughness;
+    addTexture(extension, "sheenRoughnessTexture", material.sheenRoughnessTexture, material.sheenRoughnessTransform);
   }
 
   void writeReflectance(const Material& material, Json& out) {

@@ -37,7 +37,7 @@ class FitCheck {
     for (const auto& m : scene_.materials)
       for (const int texture : {m.baseColorTexture, m.metallicRoughnessTexture, m.normalTexture, m.occlusionTexture,
                                 m.emissiveTexture, m.anisotropyTexture, m.specularTexture, m.specularColorTexture, m.clearcoatTexture,
-                                m.clearcoatRoughnessTexture})
+                                m.clearcoatRoughnessTexture, m.sheenColorTexture, m.sheenRoughnessTexture})
         require(inRange(texture, scene_.textures.size()), "material " + m.name + " names a texture that does not exist");
     for (const auto& image : scene_.images) require(!image.bytes.empty(), "image " + image.name + " is empty");
   }

@@ -167,6 +167,22 @@ double visibleNormalDensity(double alphaX, double alphaY, glm::dvec3 wo, glm::dv
   return ggxDistribution(alphaX, alphaY, sum / length) / (2.0 * (wo.z + stretched(alphaX, alphaY, wo)));
 }
 
+/// Estevez and Kulla's fitted shadowing, their equation 3: coefficients between those of roughness 0 and 1.
+double sheenLambda(double alpha, double cosine) {
+  const double t = (1.0 - alpha) * (1.0 - alpha);
+  const double a = std::lerp(21.5473, 25.3245, t), b = std::lerp(3.82987, 3.32435, t), c = std::lerp(0.19823, 0.16801, t),
+               d = std::lerp(-1.97760, -1.27393, t), e = std::lerp(-4.32054, -4.85967, t);
+  const auto fit = [&](double x) { return a / (1.0 + b * std::pow(x, c)) + d * x + e; };
+  return std::exp(cosine < 0.5 ? fit(cosine) : 2.0 * fit(0.5) - fit(1.0 - cosine));
+}
+
+/// D V wi.z of a sheen.
+double sheenTimesCosine(double alpha, double cosineOut, double cosineIn, double cosineHalf) {
+  const double sine2 = std::max(0.0, 1.0 - cosineHalf * cosineHalf);
+  const double d = (2.0 + 1.0 / alpha) * std::pow(sine2, 0.5 / alpha) / (2.0 * kPi);
+  return d / ((1.0 + sheenLambda(alpha, cosineOut) + sheenLambda(alpha, cosineIn)) * 4.0 * cosineOut);
+}
+
 /// Columns: an orthonormal frame about the coat's normal.
 glm::dmat3 coatFrame(const Brdf& brdf) {
   const glm::dvec3 n = brdf.coatNormal;
@@ -176,6 +192,20 @@ glm::dmat3 coatFrame(const Brdf& brdf) {
 }
 
 }  // namespace
+
+double sheenAlbedo(double alpha, double cosineOut) {
+  constexpr int kRows = 24, kColumns = 24;
+  const glm::dvec3 wo(std::sqrt(std::max(0.0, 1.0 - cosineOut * cosineOut)), 0.0, cosineOut);
+  double sum = 0.0;
+  for (int i = 0; i < kRows; ++i)
+    for (int j = 0; j < kColumns; ++j) {
+      // Midpoints, dense towards the horizon where smooth fuzz shines.
+      const double u = (i + 0.5) / kRows, cosine = u * u, sine = std::sqrt(1.0 - cosine * cosine), phi = (j + 0.5) / kColumns * kPi;
+      const glm::dvec3 wi(sine * std::cos(phi), sine * std::sin(phi), cosine);
+      sum += 2.0 * u * sheenTimesCosine(alpha, cosineOut, cosine, glm::normalize(wo + wi).z);
+    }
+  return std::min(1.0, sum * 2.0 * kPi / (kRows * kColumns));
+}
 
 double coatWeight(const Brdf& brdf, glm::dvec3 wo) {
   if (!(brdf.coat > 0.0)) return 0.0;
@@ -190,6 +220,8 @@ glm::dvec3 brdfTimesCosine(const Brdf& brdf, glm::dvec3 wo, glm::dvec3 wi) {
   if (wi.z > 0.0 && wo.z > 0.0) {
     const glm::dvec3 f = fresnel(brdf, glm::dot(wo, wh));
     sum = f * brdf.gain * reflectionTimesCosine(brdf, wo, wi, wh) + (1.0 - largest(f)) * brdf.diffuse / kPi * wi.z;
+    if (largest(brdf.sheen) > 0.0)
+      sum = (1.0 - largest(brdf.sheen) * brdf.sheenAlbedo) * sum + brdf.sheen * sheenTimesCosine(brdf.sheenAlpha, wo.z, wi.z, wh.z);
     sum *= 1.0 - coat;
   }
   if (!(coat > 0.0)) return sum;
@@ -235,7 +267,7 @@ double coatDensity(const Brdf& brdf, glm::dvec3 wo, glm::dvec3 wi) {
 double reflectionShare(const Brdf& brdf, glm::dvec3 wo) {
   const glm::dvec3 f = fresnel(brdf, wo.z);
   const double reflected = f.x + f.y + f.z;
-  const glm::dvec3 scattered = (1.0 - largest(f)) * brdf.diffuse;
+  const glm::dvec3 scattered = (1.0 - largest(f)) * brdf.diffuse + brdf.sheen * brdf.sheenAlbedo;
   const double total = reflected + scattered.x + scattered.y + scattered.z;
   if (!(total > reflected)) return 1.0;
   if (!(reflected > 0.0)) return 0.0;

@@ -2,9 +2,10 @@
 /// The reflectance of a surface, and ways to sample it. Written apart from shaders/lobe on purpose: each is the other's check. Double
 /// precision. Vectors are unit, in the tangent frame (x tangent, y bitangent, z normal).
 ///
-///   f = (1 - coat) (F gain R + (1 - max F) diffuse / pi) + coat R_coat,   F = f0 + (f90 - f0)(1 - wo.wh)^5
+///   f = (1 - coat) (sheen R_sheen + (1 - max sheen E(wo)) (F gain R + (1 - max F) diffuse / pi)) + coat R_coat,   F = f0 + (f90 - f0)(1 - wo.wh)^5
 ///
-/// (glTF 2.0, appendix B; KHR_materials_specular, _clearcoat). R of GGX is D G / (4 (n.wi)(n.wo)): D anisotropic (Burley, Physically-Based
+/// (glTF 2.0, appendix B; KHR_materials_specular, _clearcoat, _sheen: Estevez and Kulla, Production Friendly Microfacet Sheen BRDF, 2017; E is the albedo
+/// of R_sheen). R of GGX is D G / (4 (n.wi)(n.wo)): D anisotropic (Burley, Physically-Based
 /// Shading at Disney, 2012, eq. 13), G height-correlated Smith (Heitz, Understanding the Masking-Shadowing Function, JCGT 3(2), 2014, eq. 99
 /// and 87). Others: Cook and Torrance 1982 with a Gaussian of the angle and groove masking; Beckmann's distribution with its Smith masking;
 /// Blinn-Phong and Ward normalised as in Wang et al. 2009; Ashikhmin and Shirley 2000, eq. 3.
@@ -17,6 +18,8 @@ namespace chiaro::reference {
 
 /// Roughness below this is taken as this: a lobe far narrower than a texel of any environment.
 inline constexpr double kMinAlpha = 1e-4;
+/// Fuzz smoother than perceptual .07 is taken as that: it would only be a rim below a pixel.
+inline constexpr double kMinSheenAlpha = 0.0049;
 
 struct Brdf {
   glm::dvec3 diffuse{0.0};  ///< diffuse albedo: base colour * (1 - metallic)
@@ -26,6 +29,9 @@ struct Brdf {
   double alphaY = 0.25;     ///< and along the bitangent
   Reflectance model = Reflectance::ggx;
   glm::dvec3 gain{1.0};     ///< of the reflection, for what scatters more than once: multipleScatteringGain()
+  glm::dvec3 sheen{0.0};    ///< sheen colour
+  double sheenAlpha = 1.0;  ///< roughness^2, at least kMinSheenAlpha
+  double sheenAlbedo = 0.0; ///< E(wo), see sheenAlbedo(); for a sheen of 0 it does not matter
   double coat = 0.0;        ///< clearcoat factor
   double coatAlpha = kMinAlpha;
   glm::dvec3 coatNormal{0.0, 0.0, 1.0};
@@ -33,6 +39,9 @@ struct Brdf {
 
 /// f * wi.z, per steradian; 0 where wi or wo is below the surface (the coat's: below its own).
 glm::dvec3 brdfTimesCosine(const Brdf& brdf, glm::dvec3 wo, glm::dvec3 wi);
+
+/// Directional albedo of a sheen of colour 1, error 2e-3.
+double sheenAlbedo(double alpha, double cosineOut);
 
 /// What the coat reflects, and takes from what lies under it: factor * Schlick's Fresnel of F0 .04 at its own normal.
 double coatWeight(const Brdf& brdf, glm::dvec3 wo);

@@ -50,6 +50,8 @@ SurfaceReader::SurfaceReader(const Scene& scene, bool energyCompensation) : scen
     decode(material.specularColorTexture, TextureEncoding::srgb);
     decode(material.clearcoatTexture, TextureEncoding::linear);
     decode(material.clearcoatRoughnessTexture, TextureEncoding::linear);
+    decode(material.sheenColorTexture, TextureEncoding::srgb);
+    decode(material.sheenRoughnessTexture, TextureEncoding::linear);
   }
 }
 
@@ -113,6 +115,7 @@ Surface SurfaceReader::at(const RayHit& hit, glm::dvec3 wo) const {
   readBrdf(material, texcoord, anisotropy, surface);
   surface.brdf.coatNormal = shadingNormalTowards(surface.interpolatedNormal, wo) * surface.worldFromTangent;
   const glm::dvec3 local = wo * surface.worldFromTangent;
+  if (surface.brdf.sheen != glm::dvec3(0.0)) surface.brdf.sheenAlbedo = sheenAlbedo(surface.brdf.sheenAlpha, std::max(local.z, 1e-3));
   if (energyCompensation_) surface.brdf.gain = multipleScatteringGain(surface.brdf, local);
   surface.emission = glm::dvec3(material.emissiveFactor) *
                      glm::dvec3(lookUp(material.emissiveTexture, material.emissiveTransform, TextureEncoding::srgb, texcoord)) *
@@ -158,6 +161,13 @@ void SurfaceReader::readBrdf(const Material& material, glm::vec2 texcoord, doubl
     brdf.f90 = glm::dvec3(1.0);
   }
 
+  if (material.sheenColorFactor != glm::vec3(0.0f)) {
+    brdf.sheen = glm::dvec3(material.sheenColorFactor) *
+                 glm::dvec3(read(material.sheenColorTexture, material.sheenColorTransform, TextureEncoding::srgb));
+    const double roughness = static_cast<double>(material.sheenRoughness) *
+                             read(material.sheenRoughnessTexture, material.sheenRoughnessTransform, TextureEncoding::linear).w;
+    brdf.sheenAlpha = std::clamp(roughness * roughness, kMinSheenAlpha, 1.0);
+  }
   if (material.clearcoatFactor > 0.0f) {
     brdf.coat = static_cast<double>(material.clearcoatFactor) *
                 read(material.clearcoatTexture, material.clearcoatTransform, TextureEncoding::linear).x;

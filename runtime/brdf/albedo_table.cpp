@@ -73,4 +73,26 @@ const AlbedoTable& sharedAlbedoTable() {
   return table;
 }
 
+std::vector<float> makeSheenAlbedoTable(int size, int threads) {
+  std::vector<float> table(static_cast<std::size_t>(size) * static_cast<std::size_t>(size));
+  parallelFor(size * size, threads, [&](int texel) {
+    const double roughness = static_cast<double>(texel % size) / (size - 1);
+    const double cosineOut = leastCosine(static_cast<double>(texel / size) / (size - 1));
+    const Vec3 wo = viewDirection(cosineOut);
+    // Light directions, dense towards the horizon where smooth fuzz shines.
+    constexpr int kPolar = 40, kAzimuth = 40;
+    double sum = 0.0;
+    for (int i = 0; i < kPolar; ++i) {
+      const double u = (i + 0.5) / kPolar, cosineIn = u * u, sine = std::sqrt(1.0 - cosineIn * cosineIn);
+      for (int j = 0; j < kAzimuth; ++j) {
+        const double phi = (j + 0.5) / kAzimuth * lobe64::kPi;
+        const Vec3 wh = glm::normalize(wo + Vec3(sine * std::cos(phi), sine * std::sin(phi), cosineIn));
+        sum += 2.0 * u * cosineIn * lobe64::sheenReflectance(cosineOut, cosineIn, wh.z, roughness * roughness);
+      }
+    }
+    table[static_cast<std::size_t>(texel)] = static_cast<float>(std::min(1.0, sum * lobe64::kTwoPi / (kPolar * kAzimuth)));
+  });
+  return table;
+}
+
 }  // namespace chiaro

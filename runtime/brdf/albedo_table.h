@@ -1,5 +1,5 @@
 #pragma once
-/// Directional albedo of GGX. Independent of any scene.
+/// Directional albedos of GGX and of fuzz. Independent of any scene.
 
 #include <glm/glm.hpp>
 #include <vector>
@@ -18,6 +18,9 @@ AlbedoTable makeAlbedoTable(int size = 64, int threads = 0);
 
 /// The table of default size, made when it is first asked for and kept while the process lives.
 const AlbedoTable& sharedAlbedoTable();
+
+/// Of a sheen of colour 1 (shaders/lobe/sheen.glsl): texel (roughness i, sqrt cosine j), both of [0, 1], at [j * size + i].
+std::vector<float> makeSheenAlbedoTable(int size, int threads = 0);
 
 /// (x, y) of AlbedoTable at one point, by quadrature over visible half vectors; error below 1e-3 for alpha >= 1e-3.
 glm::dvec2 ggxAlbedo(double alpha, double cosineOut);

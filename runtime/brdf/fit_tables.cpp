@@ -15,8 +15,7 @@ int main(int count, char** arguments) {
   std::ofstream out(arguments[1]);
   out.precision(9);  // enough for every float
   out << "#include \"runtime/brdf/embedded_tables.h\"\n\n#include <array>\n\nnamespace chiaro {\nnamespace {\n\n";
-  constexpr int kinds[] = {lobe64::kCookTorrance, lobe64::kBeckmann, lobe64::kBlinnPhong, lobe64::kWard, lobe64::kGgx};
-  for (const int kind : kinds) {
+  for (int kind = 0; kind < lobe64::kModelCount; ++kind) {
     out << "constexpr float kTable" << kind << "[] = {";
     const char* separator = "";
     for (const glm::vec4& entry : makeReflectanceTable(kind).entries)
@@ -24,8 +23,8 @@ int main(int count, char** arguments) {
     out << "};\n\n";
   }
   out << "}  // namespace\n\nstd::span<const float> embeddedTable(int kind) {\n"
-         "  static constexpr std::array<std::span<const float>, 5> tables{";
-  for (const int kind : kinds) out << (kind == kinds[0] ? "" : ", ") << "kTable" << kind;
+         "  static constexpr std::array<std::span<const float>, " << lobe64::kModelCount << "> tables{";
+  for (int kind = 0; kind < lobe64::kModelCount; ++kind) out << (kind == 0 ? "" : ", ") << "kTable" << kind;
   out << "};\n  return tables.at(static_cast<std::size_t>(kind));\n}\n\n}  // namespace chiaro\n";
   out.close();
   if (out.good()) return 0;

@@ -25,8 +25,11 @@ ReflectanceTable unpacked(int kind) {
 }  // namespace
 
 const ReflectanceTable& reflectanceTableOf(int kind) {
-  static const std::array tables{unpacked(lobe64::kCookTorrance), unpacked(lobe64::kBeckmann), unpacked(lobe64::kBlinnPhong), unpacked(lobe64::kWard),
-                                 unpacked(lobe64::kGgx)};
+  static const auto tables = [] {
+    std::array<ReflectanceTable, lobe64::kModelCount> all;
+    for (int k = 0; k < lobe64::kModelCount; ++k) all[static_cast<std::size_t>(k)] = unpacked(k);
+    return all;
+  }();
   return tables.at(static_cast<std::size_t>(kind));
 }
 

@@ -21,7 +21,7 @@ struct ReflectanceTable {
   std::vector<glm::vec4> entries;
 };
 
-/// The table of default size of a round model (kCookTorrance .. kGgx), as the build fitted it (reflectance_fit.h).
+/// The table of default size of a model (its kind in shaders/lobe/ndf.glsl) where it is round, as the build fitted it (reflectance_fit.h).
 const ReflectanceTable& reflectanceTableOf(int kind);
 
 /// A lobe as it stands in the tangent frame of a viewer in the xz plane.

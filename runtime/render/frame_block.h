@@ -11,7 +11,7 @@ inline constexpr int kMaxSgLights = 32;
 inline constexpr int kMaxPunctualLights = 32;
 inline constexpr int kMaxDirections = 64;
 inline constexpr int kCommonTextures = 5;    // of a glTF material with anisotropy, units 0 ..
-inline constexpr int kMaterialTextures = 9;  // with those of KHR_materials_specular and _clearcoat, units 17 ..
+inline constexpr int kMaterialTextures = 11;  // with those of KHR_materials_specular, _clearcoat and _sheen, units 17 ..
 
 struct SgLightBlock {
   glm::vec4 axisSharpness{0.0f};
@@ -58,9 +58,10 @@ struct MaterialBlock {
   glm::vec4 specular{0.0f};
   glm::vec4 fixedF0{0.0f};
   glm::vec4 coat{0.0f};
+  glm::vec4 sheen{0.0f};
   glm::vec4 textureLinear[kMaterialTextures];  // columns of a 2 x 2 matrix
   glm::vec4 textureOffset[kMaterialTextures];
 };
-static_assert(offsetof(MaterialBlock, textureLinear) == 128 && sizeof(MaterialBlock) == 416);
+static_assert(offsetof(MaterialBlock, textureLinear) == 144 && sizeof(MaterialBlock) == 496);
 
 }  // namespace chiaro

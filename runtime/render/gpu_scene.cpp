@@ -101,7 +101,8 @@ void GpuScene::uploadTextures(const Scene& scene) {
                                  make(material.normalTexture, false), make(material.emissiveTexture, true),
                                  make(material.anisotropyTexture, false), make(material.specularTexture, false),
                                  make(material.specularColorTexture, true), make(material.clearcoatTexture, false),
-                                 make(material.clearcoatRoughnessTexture, false)});
+                                 make(material.clearcoatRoughnessTexture, false), make(material.sheenColorTexture, true),
+                                 make(material.sheenRoughnessTexture, false)});
   }
 }
 
@@ -126,7 +127,8 @@ void GpuScene::writeMaterials() {
     // An override of the parameters drops the texture by setting its index to none.
     const std::array<int, kMaterialTextures> wanted{m.baseColorTexture,     m.metallicRoughnessTexture, m.normalTexture,
                                                     m.emissiveTexture,      m.anisotropyTexture,        m.specularTexture,
-                                                    m.specularColorTexture, m.clearcoatTexture,         m.clearcoatRoughnessTexture};
+                                                    m.specularColorTexture, m.clearcoatTexture,         m.clearcoatRoughnessTexture,
+                                                    m.sheenColorTexture,    m.sheenRoughnessTexture};
     int present = 0;
     for (int t = 0; t < kMaterialTextures; ++t)
       if (wanted[at(t)] != kNone && materialTextures_[i][at(t)] != kNone) present |= 1 << t;
@@ -134,9 +136,11 @@ void GpuScene::writeMaterials() {
     block.specular = glm::vec4(dielectricF0(m.ior) * m.specularColorFactor, m.specularFactor);
     block.fixedF0 = m.reflectanceF0 ? glm::vec4(*m.reflectanceF0, 1.0f) : glm::vec4(0.0f);
     block.coat = glm::vec4(m.clearcoatFactor, m.clearcoatRoughness, 0, 0);
+    block.sheen = glm::vec4(m.sheenColorFactor, m.sheenRoughness);
     const std::array<const TextureTransform*, kMaterialTextures> transforms{
         &m.baseColorTransform,  &m.metallicRoughnessTransform, &m.normalTransform,    &m.emissiveTransform,          &m.anisotropyTransform,
-        &m.specularTransform,   &m.specularColorTransform,     &m.clearcoatTransform, &m.clearcoatRoughnessTransform};
+        &m.specularTransform,   &m.specularColorTransform,     &m.clearcoatTransform, &m.clearcoatRoughnessTransform,
+        &m.sheenColorTransform, &m.sheenRoughnessTransform};
     for (std::size_t t = 0; t < transforms.size(); ++t) {
       const glm::mat2 linear = transforms[t]->linear();
       block.textureLinear[t] = glm::vec4(linear[0], linear[1]);

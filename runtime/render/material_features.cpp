@@ -23,7 +23,7 @@ std::vector<std::string> MaterialFeatures::defines(int layersEach) const {
   }
   std::string list;
   for (const int layer : layers) list += (list.empty() ? "" : ", ") + std::to_string(layer);
-  return {"REFLECTANCE_MODELS " + std::to_string(models != 0), "MODEL_LAYERS int[](" + list + ")", "CLEARCOAT " + std::to_string(coat),
+  return {"REFLECTANCE_MODELS " + std::to_string(models != 0), "MODEL_LAYERS int[](" + list + ")", "CLEARCOAT " + std::to_string(coat), "SHEEN " + std::to_string(sheen),
           "MATERIAL_TEXTURES " + std::to_string(layerTextures ? kMaterialTextures : kCommonTextures)};
 }
 
@@ -32,14 +32,16 @@ MaterialFeatures featuresOf(const std::vector<Material>& materials) {
   for (const auto& m : materials) {
     if (m.reflectance != Reflectance::ggx) features.models |= 1u << static_cast<unsigned>(m.reflectance);
     features.coat = features.coat || m.clearcoatFactor > 0.0f;
-    for (const int texture : {m.specularTexture, m.specularColorTexture, m.clearcoatTexture, m.clearcoatRoughnessTexture})
+    features.sheen = features.sheen || m.sheenColorFactor != glm::vec3(0.0f);
+    for (const int texture : {m.specularTexture, m.specularColorTexture, m.clearcoatTexture, m.clearcoatRoughnessTexture, m.sheenColorTexture,
+                              m.sheenRoughnessTexture})
       features.layerTextures = features.layerTextures || texture != kNone;
   }
   return features;
 }
 
 MaterialFeatures merged(const MaterialFeatures& a, const MaterialFeatures& b) {
-  return {a.models | b.models, a.coat || b.coat, a.layerTextures || b.layerTextures};
+  return {a.models | b.models, a.coat || b.coat, a.sheen || b.sheen, a.layerTextures || b.layerTextures};
 }
 
 int lobeKindOf(Reflectance model) {

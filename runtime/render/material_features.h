@@ -11,7 +11,8 @@ namespace chiaro {
 struct MaterialFeatures {
   unsigned models = 0;         ///< bit of every Reflectance in use but GGX
   bool coat = false;
-  bool layerTextures = false;  ///< of KHR_materials_specular and _clearcoat
+  bool sheen = false;
+  bool layerTextures = false;  ///< of KHR_materials_specular, _clearcoat and _sheen
 
   bool operator==(const MaterialFeatures&) const = default;
   /// Where the fitted table of a model starts among those of the models in use; -1 where it is not in use.

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "assets/error.h"
+#include "runtime/brdf/albedo_table.h"
 #include "runtime/brdf/reflectance_table.h"
 #include "shaders/cpp/lobe.h"
 
@@ -22,12 +23,15 @@ std::vector<glm::vec4> albedoOf(const ReflectanceTable& table) {
   return albedo;
 }
 
+constexpr int kMostUnits = 24;
+
 void requireTextureUnits() {
   GLint units = 0;
   glGetIntegerv(GL_MAX_TEXTURE_IMAGE_UNITS, &units);
-  if (units < 21)
-    throw Error(ExitCode::failed, "materials", "the OpenGL driver has " + std::to_string(units) + " texture units a stage, these materials take 21",
-                "leave CHIARO_materials_reflectance and textures of specular and coat out");
+  if (units < kMostUnits)
+    throw Error(ExitCode::failed, "materials",
+                "the OpenGL driver has " + std::to_string(units) + " texture units a stage, these materials take " + std::to_string(kMostUnits),
+                "leave CHIARO_materials_reflectance, KHR_materials_sheen and textures of specular and coat out");
 }
 
 }  // namespace
@@ -39,8 +43,16 @@ gl::Texture makeGgxTexture() {
   return texture;
 }
 
+gl::Texture makeSheenAlbedoTexture(const MaterialFeatures& features) {
+  if (!features.sheen) return {};
+  constexpr int kSize = 32;
+  gl::Texture texture = gl::Texture::make2d(GL_R32F, kSize, kSize);
+  texture.upload(0, GL_RED, GL_FLOAT, makeSheenAlbedoTable(kSize).data());
+  return texture;
+}
+
 gl::Texture makeReflectanceTextures(const MaterialFeatures& features) {
-  if (features.models != 0 || features.layerTextures) requireTextureUnits();
+  if (features.models != 0 || features.sheen || features.layerTextures) requireTextureUnits();
   if (features.models == 0) return {};
   gl::Texture texture;
   for (int r = 0; r < kReflectanceCount; ++r) {

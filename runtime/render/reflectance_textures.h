@@ -9,10 +9,13 @@ namespace chiaro {
 /// Layers of one model but GGX: those of ReflectanceTable, then its albedo (what F0 scales, what Fresnel adds; unused).
 inline constexpr int kReflectanceLayers = 9;
 
-/// The fitted table of GGX, which every scene may need, in a texture array. A second or two, once a process.
+/// The fitted table of GGX, which every scene may need, in a texture array.
 gl::Texture makeGgxTexture();
 
-/// In the order of MaterialFeatures::tablePlace(). An empty texture where there is no model. Some seconds a model, once a process.
+/// Albedo of fuzz by roughness and root of cosine; an empty texture where no material has it.
+gl::Texture makeSheenAlbedoTexture(const MaterialFeatures& features);
+
+/// In the order of MaterialFeatures::tablePlace(). An empty texture where there is no model.
 gl::Texture makeReflectanceTextures(const MaterialFeatures& features);
 
 }  // namespace chiaro

@@ -75,7 +75,7 @@ struct Renderer::Impl {
   std::vector<Light> lights;
   std::optional<GpuEnvironment> environment;
   gl::Program depthProgram, shadeProgram, backgroundProgram, resolveProgram, displayProgram;
-  gl::Texture ggxTable, albedoTable, modelTable;
+  gl::Texture ggxTable, albedoTable, modelTable, sheenAlbedoTable;
   std::optional<MaterialFeatures> built;  // what the programs and modelTable are for
   int builtLobes = 0;
   bool builtUpsampler = false;
@@ -131,6 +131,7 @@ struct Renderer::Impl {
 
   void buildForward(const MaterialFeatures& features, int lobes, std::vector<std::string> defines) {
     modelTable = makeReflectanceTextures(features);
+    sheenAlbedoTable = makeSheenAlbedoTexture(features);
     depthProgram = gl::Program::load({{GL_VERTEX_SHADER, "shaders/stage/mesh.vert"}, {GL_FRAGMENT_SHADER, "shaders/stage/depth.frag"}}, defines);
     for (auto& define : shadingDefines(lobes)) defines.push_back(std::move(define));
     shadeProgram = gl::Program::load({{GL_VERTEX_SHADER, "shaders/stage/mesh.vert"}, {GL_FRAGMENT_SHADER, "shaders/stage/shade.frag"}}, defines);
@@ -402,6 +403,7 @@ struct Renderer::Impl {
     ggxTable.bind(9);
     albedoTable.bind(10);
     if (modelTable) modelTable.bind(16);
+    if (sheenAlbedoTable) sheenAlbedoTable.bind(23);
     noAttributes.bind();
     shaded->framebuffer.bind();
     glEnable(GL_TEXTURE_CUBE_MAP_SEAMLESS);

@@ -13,6 +13,7 @@
 #include "shaders/lobe/sh.glsl"
 #include "shaders/lobe/ggx.glsl"
 #include "shaders/lobe/ndf.glsl"
+#include "shaders/lobe/sheen.glsl"
 #include "shaders/lobe/specular.glsl"
 #include "shaders/lobe/reflectance.glsl"
 #include "shaders/lobe/elongated.glsl"

@@ -13,6 +13,7 @@
 #include "shaders/lobe/sh.glsl"
 #include "shaders/lobe/ggx.glsl"
 #include "shaders/lobe/ndf.glsl"
+#include "shaders/lobe/sheen.glsl"
 #include "shaders/lobe/specular.glsl"
 #include "shaders/lobe/reflectance.glsl"
 #include "shaders/lobe/elongated.glsl"
@@ -176,6 +177,8 @@ KERNEL(ggxDistribution) { y[0] = ggxDistribution(x.v[0], x.v[1]); }
 KERNEL(ggxDistributionAnisotropic) { y[0] = ggxDistributionAnisotropic(vectorAt(x, 0), x.v[3], x.v[4]); }
 KERNEL(ggxVisibility) { y[0] = ggxVisibility(x.v[0], x.v[1], x.v[2]); }
 KERNEL(ggxVisibilityAnisotropic) { y[0] = ggxVisibilityAnisotropic(vectorAt(x, 0), vectorAt(x, 3), x.v[6], x.v[7]); }
+KERNEL(sheenDistribution) { y[0] = sheenDistribution(x.v[0], x.v[1]); }
+KERNEL(sheenReflectance) { y[0] = sheenReflectance(x.v[0], x.v[1], x.v[2], x.v[3]); }
 KERNEL(fresnelSchlick) {
   Vec3 f = fresnelSchlick(vectorAt(x, 0), x.v[3]);
   y[0] = f.x;

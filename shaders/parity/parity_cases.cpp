@@ -348,6 +348,16 @@ void addGgx(Registry& r) {
     push(out, localDirection(g));
     out.insert(out.end(), {alpha(g), alpha(g)});
   });
+  // The power 1 / (2 alpha), up to 102, multiplies the error of the logarithm.
+  Case sheenD = CHIARO_CASE(sheenDistribution, 2, 1, scalars(1), "cosine in [0, .995], alpha in [.0049, 1]");
+  sheenD.tolerance = 5e-5;
+  r.add(sheenD, [=](Generator& g, auto& out) { out.insert(out.end(), {static_cast<float>(g.uniform(0, 0.995)), static_cast<float>(g.logUniform(0.0049, 1))}); });
+  Case sheenF = CHIARO_CASE(sheenReflectance, 4, 1, scalars(1), "cosines in (0, 1], of the half vector to .995, alpha in [.0049, 1]");
+  sheenF.tolerance = 5e-5;
+  r.add(sheenF, [=](Generator& g, auto& out) {
+    out.insert(out.end(), {static_cast<float>(g.logUniform(1e-3, 1)), static_cast<float>(g.logUniform(1e-3, 1)), static_cast<float>(g.uniform(0, 0.995)),
+                           static_cast<float>(g.logUniform(0.0049, 1))});
+  });
   r.add(CHIARO_CASE(fresnelSchlick, 4, 3, scalars(3), "F0 and cosine in [0, 1]"), [=](Generator& g, auto& out) {
     for (int i = 0; i < 3; ++i) out.push_back(g.spoil(static_cast<float>(g.uniform(0, 1))));
     out.push_back(cosine(g));

@@ -1,10 +1,10 @@
 // One material: factors in a uniform block that may change each frame, textures bound per draw.
-// Those that the scene has none of (specular and clearcoat textures) are not compiled: MATERIAL_TEXTURES.
+// Those that the scene has none of (textures of specular, clearcoat and sheen) are not compiled: MATERIAL_TEXTURES.
 #ifndef MATERIAL_TEXTURES
 #define MATERIAL_TEXTURES 5
 #endif
 const int kTextures = MATERIAL_TEXTURES;
-const int kMaterialTextures = 9;
+const int kMaterialTextures = 11;
 
 struct MaterialBlock {
   vec4 baseColor;
@@ -15,6 +15,7 @@ struct MaterialBlock {
   vec4 specular;      // a dielectric's F0 by channel before it is cut at 1, factor
   vec4 fixedF0;       // F0 that replaces the rest; w: 1 where it does
   vec4 coat;          // factor, perceptual roughness; unused
+  vec4 sheen;         // colour, perceptual roughness
   vec4 textureLinear[kMaterialTextures];  // by number: how its texture coordinates come from the mesh's, as a 2 x 2 matrix
   vec4 textureOffset[kMaterialTextures];  // and what is added; zw unused
 };
@@ -28,6 +29,8 @@ const int kHasSpecular = 32;
 const int kHasSpecularColor = 64;
 const int kHasCoat = 128;
 const int kHasCoatRoughness = 256;
+const int kHasSheenColor = 512;
+const int kHasSheenRoughness = 1024;
 
 layout(std430, binding = 2) readonly buffer MaterialBuffer { MaterialBlock materials[]; };
 uniform int materialIndex;
@@ -42,6 +45,8 @@ layout(binding = 17) uniform sampler2D specularTexture;
 layout(binding = 18) uniform sampler2D specularColorTexture;
 layout(binding = 19) uniform sampler2D coatTexture;
 layout(binding = 20) uniform sampler2D coatRoughnessTexture;
+layout(binding = 21) uniform sampler2D sheenColorTexture;
+layout(binding = 22) uniform sampler2D sheenRoughnessTexture;
 #endif
 
 bool hasTexture(MaterialBlock m, int which) { return (m.textures.x & which) != 0; }

@@ -10,6 +10,7 @@
 #ifndef REFLECTANCE_MODELS
 #define REFLECTANCE_MODELS 0
 #define CLEARCOAT 0
+#define SHEEN 0
 #endif
 #ifndef LOBES
 #define LOBES 0
@@ -51,6 +52,10 @@ struct Surface {
 #if CLEARCOAT
   float coat;           // factor
   float coatRoughness;  // perceptual
+#endif
+#if SHEEN
+  vec3 sheen;            // colour
+  float sheenRoughness;  // perceptual
 #endif
 };
 
@@ -208,6 +213,35 @@ vec3 diffuseLight(Surface s, Transfer t) {
   return taped(kTapedIrradiance, s.n, 0.0, irradiance);
 }
 
+vec2 reflectanceTableAt(sampler2DArray table, int kind, float parameter, float cosineOut) {
+  vec2 size = vec2(textureSize(table, 0).xy);
+  return (reflectanceTableCoordinate(modelWidth(kind, parameter), cosineOut) * (size - 1.0) + 0.5) / size;
+}
+
+// The fitted lobes of a round model of this width or exponent; `first`: layer at which its table starts. Lobes that carry next to nothing of the albedo
+// are left out.
+vec3 fittedReflection(Surface s, Transfer t, sampler2DArray table, float first, int kind, float parameter, vec2 albedo, float broad) {
+  float cosineOut = dot(s.n, s.wo);
+  vec3 x = incidenceTangent(s.n, s.wo);
+  vec3 y = cross(s.n, x);
+  vec2 at = reflectanceTableAt(table, kind, parameter, cosineOut);
+  int singles = reflectanceSingles(kind);
+  vec4 elevations = textureLod(table, vec3(at, first + float(reflectanceEntries(kind) - 1)), 0.0);
+  float least = 1.0e-3 * (albedo.x + albedo.y);
+  vec3 base = vec3(0.0), edge = vec3(0.0);
+  for (int k = 0; k < reflectanceLobeCount(kind); ++k) {
+    int pair = (k - singles) >> 1;
+    vec4 entry = textureLod(table, vec3(at, first + float(k < singles ? k : singles + pair)), 0.0);
+    if (entry.z + entry.w < least) continue;
+    float elevation = k < singles ? 0.0 : elevations[pair] * (((k - singles) & 1) == 0 ? 1.0 : -1.0);
+    SpecularLobe lobe = reflectanceTableLobe(entry, elevation, s.n, x, y, cosineOut, modelWidth(kind, parameter));
+    vec3 radiance = lobeRadiance(s, t, lobe.axis, lobe.sharpness, broad);
+    base += radiance * lobe.weight;
+    edge += radiance * lobe.fresnelWeight;
+  }
+  return s.f0 * base + s.f90 * edge;
+}
+
 #if REFLECTANCE_MODELS || LOBES > 0
 #include "shaders/stage/models.glsl"
 #endif
@@ -261,35 +295,6 @@ vec3 roughReflection(Surface s, Transfer t, vec3 albedo) {
   return result;
 }
 
-vec2 reflectanceTableAt(sampler2DArray table, int kind, float parameter, float cosineOut) {
-  vec2 size = vec2(textureSize(table, 0).xy);
-  return (reflectanceTableCoordinate(modelWidth(kind, parameter), cosineOut) * (size - 1.0) + 0.5) / size;
-}
-
-// The fitted lobes of a round model of this width or exponent; `first`: layer at which its table starts. Lobes that carry next to nothing of the albedo
-// are left out.
-vec3 fittedReflection(Surface s, Transfer t, sampler2DArray table, float first, int kind, float parameter, vec2 albedo, float broad) {
-  float cosineOut = dot(s.n, s.wo);
-  vec3 x = incidenceTangent(s.n, s.wo);
-  vec3 y = cross(s.n, x);
-  vec2 at = reflectanceTableAt(table, kind, parameter, cosineOut);
-  int singles = reflectanceSingles(kind);
-  vec4 elevations = textureLod(table, vec3(at, first + float(reflectanceEntries(kind) - 1)), 0.0);
-  float least = 1.0e-3 * (albedo.x + albedo.y);
-  vec3 base = vec3(0.0), edge = vec3(0.0);
-  for (int k = 0; k < reflectanceLobeCount(kind); ++k) {
-    int pair = (k - singles) >> 1;
-    vec4 entry = textureLod(table, vec3(at, first + float(k < singles ? k : singles + pair)), 0.0);
-    if (entry.z + entry.w < least) continue;
-    float elevation = k < singles ? 0.0 : elevations[pair] * (((k - singles) & 1) == 0 ? 1.0 : -1.0);
-    SpecularLobe lobe = reflectanceTableLobe(entry, elevation, s.n, x, y, cosineOut, modelWidth(kind, parameter));
-    vec3 radiance = lobeRadiance(s, t, lobe.axis, lobe.sharpness, broad);
-    base += radiance * lobe.weight;
-    edge += radiance * lobe.fresnelWeight;
-  }
-  return s.f0 * base + s.f90 * edge;
-}
-
 vec3 smoothReflection(Surface s, Transfer t, vec3 albedo) {
 #if LEVELS > 0
   float broad = 1.0;
@@ -313,6 +318,10 @@ vec3 smoothReflection(Surface s, Transfer t, vec3 albedo) {
   }
   return s.f0 * base * (albedo.x / max(baseWeight, 1.0e-6)) + s.f90 * edge * (albedo.y / max(edgeWeight, 1.0e-6));
 }
+
+#if SHEEN
+#include "shaders/stage/fuzz.glsl"
+#endif
 
 // GGX by SG lobes where it is smooth, by the BRDF itself where it is rough; smoothShare: how much of it comes from lobes.
 vec3 ggxReflection(Surface s, Transfer t, vec3 albedo, out float smoothShare) {
@@ -395,6 +404,13 @@ vec3 shade(Surface s, Transfer t, out vec3 diffusePart) {
   vec3 lampDiffuse;
   radiance += lampLight(s, t, smoothShare, gain, lampDiffuse);
   diffusePart += lampDiffuse;
+#if SHEEN
+  if (largestOf(s.sheen) > 0.0) {
+    float underSheen = throughSheen(s);
+    radiance = underSheen * radiance + sheenReflection(s, t);
+    diffusePart *= underSheen;
+  }
+#endif
 #if CLEARCOAT
   float through = throughCoat(s);
   if (through < 1.0) radiance = through * radiance + (1.0 - through) * coatReflection(s, t);
@@ -416,6 +432,11 @@ void surfaceAlbedo(Surface s, out vec3 diffuse, out vec3 reflected) {
   if (kModelLayers[s.kind] >= 0) albedo.xy = modelAlbedo(s, modelOf(s.kind, s.alphaT, s.alphaB));
 #endif
   reflected = s.f0 * albedo.x + s.f90 * albedo.y;
+#if SHEEN
+  float underSheen = throughSheen(s);
+  diffuse *= underSheen;
+  reflected = underSheen * reflected + s.sheen * sheenAlbedoOf(s);
+#endif
 #if CLEARCOAT
   float through = throughCoat(s);
   vec3 coat = albedoAt(s.coatRoughness, dot(shadingNormalTowards(s.ng, s.wo), s.wo));

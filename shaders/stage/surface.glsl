@@ -88,6 +88,15 @@ Surface surfaceHere(MaterialBlock m, vec4 baseColor) {
 #endif
   s.coatRoughness = clamp(coatRoughness, 0.0, 1.0);
 #endif
+#if SHEEN
+  s.sheen = m.sheen.rgb;
+  float sheenRoughness = m.sheen.w;
+#if MATERIAL_TEXTURES > 5
+  if (hasTexture(m, kHasSheenColor)) s.sheen *= texture(sheenColorTexture, texcoord[9]).rgb;
+  if (hasTexture(m, kHasSheenRoughness)) sheenRoughness *= texture(sheenRoughnessTexture, texcoord[10]).a;
+#endif
+  s.sheenRoughness = clamp(sheenRoughness, 0.07, 1.0);
+#endif
   return s;
 }
 

@@ -1,8 +1,21 @@
 // A Surface in two texels, so that any pass may shade any pixel: its triangle, and what its textures say.
 struct PackedSurface {
   uvec4 place;     // first corner in the index list and the side (top bit), normal, widths, tangent angle and kind and coat's roughness
-  uvec4 colors;    // halves: diffuse, F90, F0, coat
+  uvec4 colors;    // halves: diffuse, F90, F0, coat; with a sheen roots in 10 bits: diffuse, F0, then F90 and coat, then the sheen and its roughness in 8
 };
+
+#if SHEEN
+uint packedColor(vec3 color, float bits) {
+  uvec3 steps = uvec3(sqrt(clamp(color, vec3(0.0), vec3(1.0))) * (exp2(bits) - 1.0) + 0.5);
+  uint shift = uint(bits);
+  return steps.r | steps.g << shift | steps.b << (2u * shift);
+}
+vec3 unpackedColor(uint packed, float bits) {
+  uint shift = uint(bits), mask = (1u << shift) - 1u;
+  vec3 roots = vec3(packed & mask, packed >> shift & mask, packed >> (2u * shift) & mask) / (exp2(bits) - 1.0);
+  return roots * roots;
+}
+#endif
 
 const float kTangentSteps = 65535.0;
 
@@ -19,7 +32,12 @@ PackedSurface packSurface(Surface s, int firstCorner, bool front) {
 #endif
   p.place = uvec4(uint(firstCorner) | (front ? 0u : 0x80000000u), packedDirection(s.n), packUnorm2x16(sqrt(vec2(s.alphaT, s.alphaB))),
                   turn | uint(s.kind) << 16 | (s.bumped ? 0x80000u : 0u) | coatRoughness << 20);
+#if SHEEN
+  p.colors = uvec4(packedColor(s.diffuse, 10.0), packedColor(s.f0, 10.0), packHalf2x16(vec2(s.f90, coat)),
+                   packedColor(s.sheen, 8.0) | uint(s.sheenRoughness * 255.0 + 0.5) << 24);
+#else
   p.colors = uvec4(packHalf2x16(s.diffuse.rg), packHalf2x16(vec2(s.diffuse.b, s.f90)), packHalf2x16(s.f0.rg), packHalf2x16(vec2(s.f0.b, coat)));
+#endif
   return p;
 }
 
@@ -60,12 +78,21 @@ Surface unpackSurface(PackedSurface p, vec2 ndc, out uvec3 corners, out vec3 bar
   s.alphaB = clampAlpha(width.y * width.y);
   s.kind = int(p.place.w >> 16 & 7u);
   s.bumped = (p.place.w & 0x80000u) != 0u;
+#if SHEEN
+  s.diffuse = unpackedColor(p.colors.x, 10.0);
+  s.f0 = unpackedColor(p.colors.y, 10.0);
+  s.sheen = unpackedColor(p.colors.w, 8.0);
+  s.sheenRoughness = max(float(p.colors.w >> 24) / 255.0, 0.07);
+  vec2 bf = unpackHalf2x16(p.colors.z);
+  s.f90 = bf.x;
+#else
   vec2 rg = unpackHalf2x16(p.colors.x), bf = unpackHalf2x16(p.colors.y);
   s.diffuse = vec3(rg, bf.x);
   s.f90 = bf.y;
   rg = unpackHalf2x16(p.colors.z);
   bf = unpackHalf2x16(p.colors.w);
   s.f0 = vec3(rg, bf.x);
+#endif
 #if CLEARCOAT
   s.coat = bf.y;
   s.coatRoughness = float(p.place.w >> 20) / 4095.0;

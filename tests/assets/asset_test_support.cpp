@@ -215,6 +215,11 @@ BakedScene sampleBake(int terms) {
   brushed.clearcoatTransform.offset.y = 0.3f;
   brushed.clearcoatRoughness = 0.2f;
   brushed.clearcoatRoughnessTexture = 1;
+  brushed.sheenColorFactor = {0.5f, 0.25f, 0.125f};
+  brushed.sheenColorTexture = 0;
+  brushed.sheenColorTransform.scale.x = 2.5f;
+  brushed.sheenRoughness = 0.4f;
+  brushed.sheenRoughnessTexture = 2;
   brushed.reflectance = Reflectance::ashikhminShirley;
   brushed.reflectanceWidth = {{1000.0f, 20.0f}};
   brushed.reflectanceF0 = {{0.9f, 0.5f, 0.1f}};

@@ -123,5 +123,39 @@ TEST(GgxMixture, PublishedExample) {
   EXPECT_EQ(ggxMixtureLobe(1.0, 3, 1), ggxMixtureLobe(.99, 3, 1));
 }
 
+// Estevez and Kulla's distribution holds all microfacets: its projected area is 1.
+TEST(Sheen, DistributionIsNormalised) {
+  for (const double alpha : {0.0049, 0.05, 0.3, 1.0}) {
+    double sum = 0.0;
+    constexpr int kSteps = 20000;
+    for (int i = 0; i < kSteps; ++i) {
+      const double cosine = (i + 0.5) / kSteps;
+      sum += lobe64::sheenDistribution(cosine, alpha) * cosine * lobe64::kTwoPi / kSteps;
+    }
+    EXPECT_NEAR(sum, 1.0, 1e-4) << alpha;
+  }
+}
+
+// The reflectance against the formula written out with the published coefficients.
+TEST(Sheen, MatchesThePublishedFit) {
+  const auto lambda = [](double r, double x) {
+    const double t = (1 - r) * (1 - r);
+    const double p[5] = {t * 25.3245 + (1 - t) * 21.5473, t * 3.32435 + (1 - t) * 3.82987, t * 0.16801 + (1 - t) * 0.19823,
+                         t * -1.27393 + (1 - t) * -1.97760, t * -4.85967 + (1 - t) * -4.32054};
+    const auto l = [&](double y) { return p[0] / (1 + p[1] * std::pow(y, p[2])) + p[3] * y + p[4]; };
+    return x < 0.5 ? std::exp(l(x)) : std::exp(2 * l(0.5) - l(1 - x));
+  };
+  for (const double alpha : {0.01, 0.2, 0.7, 1.0})
+    for (const double o : {0.05, 0.4, 0.9})
+      for (const double i : {0.1, 0.6, 0.99})
+        for (const double h : {0.1, 0.7, 0.95}) {
+          const double d = (2 + 1 / alpha) * std::pow(1 - h * h, 0.5 / alpha) / (2 * lobe64::kPi);
+          const double expected = d / ((1 + lambda(alpha, o) + lambda(alpha, i)) * 4 * o * i);
+          EXPECT_NEAR(lobe64::sheenReflectance(o, i, h, alpha), expected, 1e-9 + 1e-6 * expected) << alpha << ' ' << o << ' ' << i << ' ' << h;
+        }
+  EXPECT_EQ(lobe64::sheenReflectance(0.5, -0.1, 0.3, 0.2), 0.0);
+  EXPECT_TRUE(std::isnan(lobe64::sheenReflectance(0.5, std::nan(""), 0.3, 0.2)));
+}
+
 }  // namespace
 }  // namespace chiaro

@@ -2,12 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
 #include "assets/builtin/builtin_scene.h"
 #include "assets/image/image.h"
 #include "precompute/reference/reference.h"
+#include "runtime/render/material_features.h"
 #include "runtime/render/renderer.h"
 #include "tests/lobe/gl_test_main.h"
 #include "tests/runtime/unoccluded.h"
@@ -113,11 +115,38 @@ TEST(RendererMaterials, CoatSpecularAndIor) {
   expectClose("specular", tinted, 34);
 }
 
+// Fuzz over a base, its albedo taken from what lies below.
+TEST(RendererMaterials, Sheen) {
+  for (const float roughness : {0.2f, 0.5f, 1.0f}) {
+    Material cloth = metal(0.7f);
+    cloth.metallicFactor = 0.0f;
+    cloth.baseColorFactor = {0.1f, 0.05f, 0.2f, 1.0f};
+    cloth.sheenColorFactor = {0.9f, 0.6f, 0.4f};
+    cloth.sheenRoughness = roughness;
+    expectClose("sheen " + std::to_string(roughness), cloth, 34);
+  }
+}
+
+// What no material has is not compiled.
+TEST(RendererMaterials, SheenIsCompiledOnlyWhereThereIsOne) {
+  Material plain = metal(0.5f), cloth = plain;
+  cloth.sheenColorFactor = glm::vec3(0.5f);
+  const auto has = [](const Material& m, const std::string& define) {
+    const auto defines = featuresOf({m}).defines(9);
+    return std::find(defines.begin(), defines.end(), define) != defines.end();
+  };
+  EXPECT_TRUE(has(plain, "SHEEN 0"));
+  EXPECT_TRUE(has(cloth, "SHEEN 1"));
+  EXPECT_TRUE(has(cloth, "CLEARCOAT 0"));
+}
+
 // Every texture of the new extensions, each with a value of its own in the channel that counts.
 TEST(RendererMaterials, LayerTexturesMatchTheReference) {
   Material m = metal(0.5f);
   m.metallicFactor = 0.0f;
-  m.specularTexture = m.specularColorTexture = m.clearcoatTexture = m.clearcoatRoughnessTexture = 0;
+  m.specularTexture = m.specularColorTexture = m.clearcoatTexture = m.clearcoatRoughnessTexture = m.sheenColorTexture = m.sheenRoughnessTexture = 0;
+  m.sheenColorFactor = {0.3f, 0.6f, 0.9f};
+  m.sheenRoughness = 0.8f;
   m.ior = 2.0f;
   m.clearcoatFactor = 1.0f;
   m.clearcoatRoughness = 0.5f;
