@@ -48,11 +48,12 @@ BakedScene withMaterials(const BakedScene& baked, const MaterialOverride& materi
   return changed;
 }
 
-std::string fileName(const std::string& environment, std::optional<float> roughness, std::set<std::string>& taken) {
+std::string fileName(const std::string& environment, std::optional<Reflectance> model, std::optional<float> roughness, std::set<std::string>& taken) {
   std::string name = std::filesystem::path(environment).stem().string();
   for (char& c : name)
     if (!std::isalnum(static_cast<unsigned char>(c)) && c != '-') c = '_';
   if (name.empty()) name = "environment";
+  if (model) name += "_" + reflectanceNames()[static_cast<std::size_t>(*model)];
   if (roughness) {
     char text[32];
     std::snprintf(text, sizeof text, "_r%.3g", static_cast<double>(*roughness));
@@ -126,19 +127,25 @@ Comparisons compareAll(const BakedScene& baked, const BakedScene* other, const R
 
   std::vector<std::optional<float>> roughnesses(options.roughnesses.begin(), options.roughnesses.end());
   if (roughnesses.empty()) roughnesses.push_back(std::nullopt);
+  std::vector<std::optional<Reflectance>> models(options.models.begin(), options.models.end());
+  if (models.empty()) models.push_back(std::nullopt);
+  std::vector<std::pair<std::optional<Reflectance>, std::optional<float>>> materialCases;
+  for (const auto& model : models)
+    for (const auto& roughness : roughnesses) materialCases.emplace_back(model, roughness);
   std::set<std::string> names;
   for (const std::string& environment : options.environments) {
     if (progress) progress(environment + ": prefiltering", 0.0);
     const PreparedLight light = prepareLight(environment, options.threads);
-    for (const std::optional<float>& roughness : roughnesses) {
+    for (const auto& [model, roughness] : materialCases) {
       Comparison comparison;
-      comparison.name = fileName(environment, roughness, names);
+      comparison.name = fileName(environment, model, roughness, names);
       comparison.environment = environment;
+      comparison.model = model;
       comparison.roughness = roughness;
       comparison.display = {options.exposure.value_or(light.autoExposure), options.toneMap};
       comparison.lightCount = light.prefiltered.lights.size();
       comparison.prepareSeconds = light.seconds;
-      const MaterialOverride materials{roughness, options.metallic, options.model};
+      const MaterialOverride materials{roughness, options.metallic, model};
       const BakedScene changed = withMaterials(baked, materials);
       comparison.runtime = drawRuntime(changed, light, result.camera, options, comparison.display, comparison.runtimeSeconds);
       ReferenceHalves halves;

@@ -20,6 +20,7 @@ struct Comparison {
   std::string name;                ///< of its files: environment and roughness, fit for a file name, unique in a report
   std::string environment;         ///< as the user gave it
   std::optional<float> roughness;  ///< absent: the scene's own
+  std::optional<Reflectance> model;  ///< absent: the scene's own
   DisplaySettings display;
   std::size_t lightCount = 0;  ///< SG lights that the runtime found in the environment
   ImageRgba runtime;           ///< linear radiance, alpha coverage; same pixel centres as `reference`
@@ -34,7 +35,7 @@ struct Comparison {
 };
 
 struct Comparisons {
-  std::vector<Comparison> cases;  ///< environments in the order given, roughnesses within
+  std::vector<Comparison> cases;  ///< environments in the order given, models within, roughnesses within those
   Camera camera;
   std::string glRenderer, glVersion;
 };

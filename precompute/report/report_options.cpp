@@ -80,8 +80,9 @@ void declareReportOptions(CLI::App& app, ReportOptions& options, ReportOptionTex
       ->type_name("R")
       ->allow_extra_args(false);
   app.add_option("--metallic", options.metallic, "Metalness of every material, 0 to 1")->type_name("M");
-  app.add_option("--model", texts.model, "Reflectance model of every material: " + reflectanceNameList())
-      ->type_name("NAME");
+  app.add_option("--model", texts.models, "Reflectance model of every material: " + reflectanceNameList() + ". May be repeated: one comparison each")
+      ->type_name("NAME")
+      ->allow_extra_args(false);
   app.add_flag("--energy-compensation", options.energyCompensation, "GGX gives back what scatters more than once, in both pictures");
   app.add_option("--lobes", options.lobes, "1, 3, 5, 7 or 9 lobes strung for every material; 0 is the best known")
       ->type_name("N")
@@ -128,7 +129,7 @@ void finishReportOptions(ReportOptions& options, const ReportOptionTexts& texts)
   options.shadows = !texts.noShadows;
   for (const float roughness : options.roughnesses) requireShare(roughness, "--roughness");
   if (options.metallic) requireShare(*options.metallic, "--metallic");
-  options.model = modelFromOption(texts.model);
+  for (const auto& text : texts.models) if (const auto model = modelFromOption(text)) options.models.push_back(*model);
   requireLobes(options.lobes, "--lobes");
   if (options.supersample < 1 || options.supersample > 8)
     throw usageError("--supersample", "must lie between 1 and 8", "give 2 to filter edges and textures");

@@ -35,7 +35,7 @@ struct ReportOptions {
   std::optional<float> exposure;  ///< absent: autoExposure() of each environment
   ToneMap toneMap = ToneMap::neutral;
   bool shadows = true;
-  std::optional<Reflectance> model;  ///< of every material
+  std::vector<Reflectance> models;   ///< of every material; empty: the scene's own
   bool energyCompensation = false;
   int lobes = 0;                     ///< RenderSettings::lobes
   ErrorMapKind errorMap = ErrorMapKind::difference;
@@ -52,7 +52,7 @@ struct ReportOptionTexts {
   std::string camera = "auto";
   std::string exposure = "auto";
   std::string toneMap = "neutral";
-  std::string model;
+  std::vector<std::string> models;
   std::vector<std::string> lights;
   std::string errorMap = "difference";
   bool noShadows = false;

@@ -21,7 +21,7 @@ std::string formatted(const char* format, double value) {
 }
 
 std::string titleOf(const Comparison& one) {
-  return htmlText(one.environment) +
+  return htmlText(one.environment) + (one.model ? ", " + reflectanceNames()[static_cast<std::size_t>(*one.model)] : "") +
          (one.roughness ? ", roughness " + formatted("%.3g", static_cast<double>(*one.roughness)) : "");
 }
 

@@ -47,6 +47,7 @@ Json caseJson(const Comparison& one) {
   Json json;
   json["name"] = one.name;
   json["environment"] = one.environment;
+  json["model"] = one.model ? Json(reflectanceNames()[static_cast<std::size_t>(*one.model)]) : Json();
   json["roughness"] = number(one.roughness);
   json["psnr_db"] = number(d.psnr);
   json["rmse"] = number(d.rmse);
@@ -153,7 +154,7 @@ std::string reportJson(const ReportFacts& facts, const ReportOptions& options, c
 
 std::string reportCsv(const Comparisons& comparisons) {
   std::ostringstream csv;
-  csv << "name,environment,roughness,psnr_db,rmse,mean_absolute,bias,worst,object_pixels,undefined_pixels,coverage_mismatches,"
+  csv << "name,environment,model,roughness,psnr_db,rmse,mean_absolute,bias,worst,object_pixels,undefined_pixels,coverage_mismatches,"
          "rmse_without_noise,psnr_without_noise_db,reference_noise_rms,exposure,environment_lights,rays_traced,prepare_seconds,"
          "runtime_seconds,reference_seconds,ssim,flip,hdr_flip\n";
   csv.precision(9);
@@ -163,7 +164,7 @@ std::string reportCsv(const Comparisons& comparisons) {
   };
   for (const Comparison& one : comparisons.cases) {
     const PictureDifference& d = one.difference;
-    csv << one.name << ',' << quoted(one.environment) << ',';
+    csv << one.name << ',' << quoted(one.environment) << ',' << (one.model ? reflectanceNames()[static_cast<std::size_t>(*one.model)] : "") << ',';
     if (one.roughness) csv << *one.roughness;
     for (const double value : {d.psnr, d.rmse, d.meanAbsolute, d.bias, d.worst}) figure(value);
     csv << ',' << d.objectPixels << ',' << d.undefinedPixels << ',' << d.coverageMismatches;

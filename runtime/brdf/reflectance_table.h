@@ -1,6 +1,6 @@
 #pragma once
 /// View slices of the round reflectance models of shaders/lobe/ndf.glsl, fitted as SG lobes over light directions: distribution, smooth factor,
-/// cosine, warp and off-specular shift at once. Independent of any scene; made at start, for the models that a scene has.
+/// cosine, warp and off-specular shift at once. Independent of any scene.
 
 #include <glm/glm.hpp>
 #include <vector>
@@ -10,9 +10,9 @@ namespace chiaro {
 /// Entries of shaders/lobe/reflectance.glsl, layer by layer: texel (root of width i, root of cosine j) of layer k at
 /// [(k * cosineCount + j) * widthCount + i].
 ///
-/// Per texel the lobes' axes, sharpnesses and amplitudes are the least-squares fit (Levenberg and Marquardt) to rho (n.wi) over light
-/// directions, started from the texel beside it so that neighbours interpolate. Amplitudes are then split between what F0 scales
-/// and what Fresnel adds, (1 - wo.wh)^5, by non-negative least squares.
+/// Per texel the lobes' axes, sharpnesses and amplitudes are the least-squares fit (runtime/brdf/slice_fit.h) to rho (n.wi) over light directions,
+/// tails weighted up, started from the texel beside it so that neighbours interpolate. Amplitudes are then split between what F0 scales
+/// and what Fresnel adds, (1 - wo.wh)^5, by non-negative least squares; GGX's bring its exact albedo.
 struct ReflectanceTable {
   static constexpr int kWidths = 17, kCosines = 25;  ///< enough: interpolation costs less than the fit's own error
   int kind = 0;                                      ///< kCookTorrance .. kGgx
@@ -21,11 +21,7 @@ struct ReflectanceTable {
   std::vector<glm::vec4> entries;
 };
 
-/// Deterministic whatever `threads` (0: all cores). Some seconds of one core.
-ReflectanceTable makeReflectanceTable(int kind, int widthCount = ReflectanceTable::kWidths,
-                                      int cosineCount = ReflectanceTable::kCosines, int threads = 0);
-
-/// The table of default size, made when it is first asked for and kept while the process lives.
+/// The table of default size of a round model (kCookTorrance .. kGgx), as the build fitted it (reflectance_fit.h).
 const ReflectanceTable& reflectanceTableOf(int kind);
 
 /// A lobe as it stands in the tangent frame of a viewer in the xz plane.
@@ -36,10 +32,7 @@ struct SliceLobe {
   double fresnelWeight = 0.0;  ///< of the part that Fresnel adds
 };
 
-/// The nine lobes that a shader reads at this width and cosine: bilinear, kReflectanceLobes of them.
+/// The lobes that a shader reads at this width and cosine: bilinear, lobe64::reflectanceLobeCount(kind) of them.
 std::vector<SliceLobe> reflectanceLobes(const ReflectanceTable& table, double width, double cosineOut);
-
-/// One fit of `count` lobes in the plane of incidence (1, 3, 5 or 7) to one slice, F = 1, from several starts: what a table could reach.
-std::vector<SliceLobe> fitSliceLobes(int kind, double parameter, double cosineOut, int count);
 
 }  // namespace chiaro

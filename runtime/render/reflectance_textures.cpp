@@ -9,18 +9,15 @@
 namespace chiaro {
 namespace {
 
-constexpr int kSingles = 5, kPairs = 2;
-static_assert(kReflectanceLayers == lobe32::kReflectanceEntries + 1);
-static_assert(kSingles + 2 * kPairs == lobe32::kReflectanceLobes);
-
 /// Summed over the lobes of each texel.
 std::vector<glm::vec4> albedoOf(const ReflectanceTable& table) {
   const auto layer = static_cast<std::size_t>(table.widthCount) * static_cast<std::size_t>(table.cosineCount);
+  const int singles = lobe32::reflectanceSingles(table.kind), groups = singles + lobe32::reflectancePairs(table.kind);
   std::vector<glm::vec4> albedo(layer, glm::vec4(0.0f));
   for (std::size_t texel = 0; texel < layer; ++texel)
-    for (std::size_t group = 0; group < kSingles + kPairs; ++group) {
-      const glm::vec4& entry = table.entries[group * layer + texel];
-      albedo[texel] += glm::vec4(entry.z, entry.w, 0, 0) * (group < kSingles ? 1.0f : 2.0f);
+    for (int group = 0; group < groups; ++group) {
+      const glm::vec4& entry = table.entries[static_cast<std::size_t>(group) * layer + texel];
+      albedo[texel] += glm::vec4(entry.z, entry.w, 0, 0) * (group < singles ? 1.0f : 2.0f);
     }
   return albedo;
 }
@@ -34,6 +31,13 @@ void requireTextureUnits() {
 }
 
 }  // namespace
+
+gl::Texture makeGgxTexture() {
+  const ReflectanceTable& table = reflectanceTableOf(lobe32::kGgx);
+  gl::Texture texture = gl::Texture::make2dArray(GL_RGBA32F, table.widthCount, table.cosineCount, lobe32::reflectanceEntries(lobe32::kGgx));
+  texture.upload(0, GL_RGBA, GL_FLOAT, table.entries.data());
+  return texture;
+}
 
 gl::Texture makeReflectanceTextures(const MaterialFeatures& features) {
   if (features.models != 0 || features.layerTextures) requireTextureUnits();

@@ -8,7 +8,7 @@
 
 #include "assets/error.h"
 #include "assets/scene/material_override.h"
-#include "runtime/brdf/specular_table.h"
+#include "runtime/brdf/albedo_table.h"
 #include "runtime/gl/framebuffer.h"
 #include "runtime/gl/program.h"
 #include "runtime/gl/query.h"
@@ -75,7 +75,7 @@ struct Renderer::Impl {
   std::vector<Light> lights;
   std::optional<GpuEnvironment> environment;
   gl::Program depthProgram, shadeProgram, backgroundProgram, resolveProgram, displayProgram;
-  gl::Texture specularTable, albedoTable, modelTable;
+  gl::Texture ggxTable, albedoTable, modelTable;
   std::optional<MaterialFeatures> built;  // what the programs and modelTable are for
   int builtLobes = 0;
   bool builtUpsampler = false;
@@ -103,10 +103,8 @@ struct Renderer::Impl {
     resolveProgram = gl::Program::load({{GL_VERTEX_SHADER, "shaders/stage/fullscreen.vert"}, {GL_FRAGMENT_SHADER, "shaders/stage/resolve.frag"}});
     displayProgram = gl::Program::load({{GL_VERTEX_SHADER, "shaders/stage/fullscreen.vert"}, {GL_FRAGMENT_SHADER, "shaders/stage/display.frag"}});
 
-    const SpecularTable table = makeSpecularTable();
-    specularTable = gl::Texture::make2dArray(GL_RGBA32F, table.roughnessCount, table.cosineCount, SpecularTable::kLobeCount);
-    specularTable.upload(0, GL_RGBA, GL_FLOAT, table.entries.data());
-    const AlbedoTable albedo = makeAlbedoTable();
+    ggxTable = makeGgxTexture();
+    const AlbedoTable& albedo = sharedAlbedoTable();
     albedoTable = gl::Texture::make2d(GL_RGB32F, albedo.size, albedo.size);
     albedoTable.upload(0, GL_RGB, GL_FLOAT, albedo.entries.data());
   }
@@ -401,7 +399,7 @@ struct Renderer::Impl {
     scene.bindBuffers();
     prepareBodies(camera, settings);
     environment->bindTextures();
-    specularTable.bind(9);
+    ggxTable.bind(9);
     albedoTable.bind(10);
     if (modelTable) modelTable.bind(16);
     noAttributes.bind();

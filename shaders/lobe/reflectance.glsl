@@ -1,13 +1,17 @@
-// A view slice of a round reflectance model as nine SG lobes over light directions, from the table of runtime/brdf/reflectance_table.h:
-// five lobes in the plane of incidence and two pairs mirrored about it. As in specular.glsl a lobe holds its share of the albedo:
+// A view slice of a round reflectance model as SG lobes over light directions, from the table of runtime/brdf/reflectance_table.h: lobes in the
+// plane of incidence and pairs mirrored about it. As in specular.glsl a lobe holds its share of the albedo:
 //   Lo += (f0 * weight + fresnelWeight) * (mean of light * visibility over the normalised lobe).
 #ifndef CHIARO_CPP
 #include "shaders/lobe/ndf.glsl"
 #include "shaders/lobe/specular.glsl"
 #endif
 
-CONST int kReflectanceLobes = 9;
-CONST int kReflectanceEntries = 8;  // vec4 per texel: seven lobes or pairs, then the pairs' elevations
+// Five in the plane and two pairs; GGX, whose tail is long, takes ten and three.
+FN int reflectanceSingles(IN(int) kind) { return kind == kGgx ? 10 : 5; }
+FN int reflectancePairs(IN(int) kind) { return kind == kGgx ? 3 : 2; }
+FN int reflectanceLobeCount(IN(int) kind) { return reflectanceSingles(kind) + 2 * reflectancePairs(kind); }
+// vec4 per texel: singles, pairs, then the pairs' elevations.
+FN int reflectanceEntries(IN(int) kind) { return reflectanceSingles(kind) + reflectancePairs(kind) + 1; }
 
 // The table spans these widths; below, a slice only scales.
 CONST Real kMinTableWidth = Real(0.01);

@@ -1,5 +1,5 @@
-// The GGX reflection of a view direction as a mixture of SG lobes over light directions: what the runtime multiplies with light
-// and visibility. A lobe stands for the share of the reflected light that comes from around its axis:
+// The reflection of a view direction as a mixture of SG lobes over light directions: what the runtime multiplies with light
+// and visibility. (Round surfaces: reflectance.glsl.) A lobe stands for the share of the reflected light that comes from around its axis:
 //   Lo += (f0 * weight + fresnelWeight) * (mean of light * visibility over the normalised lobe).
 // Summed over the lobes, weight and fresnelWeight are the directional albedo split of the split-sum form, exactly, so that a uniform
 // environment comes back with the right brightness whatever the lobes' shapes are off by.
@@ -16,18 +16,6 @@ struct SpecularLobe {
   Real fresnelWeight;
 };
 
-// ---- isotropic: fitted per roughness and view angle (runtime/brdf/specular_table.h) -----------------------------------------------
-
-// The table spans these perceptual roughnesses; below, the fit is scale-free and the first row serves.
-CONST Real kTableMinRoughness = Real(0.1);
-CONST Real kTableMaxRoughness = Real(0.7);
-
-// Table coordinates in [0, 1]^2 (centres of the first and last texel at 0 and 1): roughness, then sqrt(cosine), which resolves grazing angles.
-FN Vec2 specularTableCoordinate(IN(Real) roughness, IN(Real) cosineOut) {
-  return Vec2((clampReal(roughness, kTableMinRoughness, kTableMaxRoughness) - kTableMinRoughness) / (kTableMaxRoughness - kTableMinRoughness),
-              sqrt(clampReal(cosineOut, Real(0.0), Real(1.0))));
-}
-
 // A unit vector perpendicular to unit n, by Duff et al. 2017.
 FN Vec3 anyTangent(IN(Vec3) n) {
   Real s = n.z >= Real(0.0) ? Real(1.0) : -Real(1.0);
@@ -42,21 +30,6 @@ FN Vec3 incidenceTangent(IN(Vec3) n, IN(Vec3) wo) {
   Real length2 = dot(across, across);
   if (length2 < Real(1.0e-8)) return anyTangent(n);
   return across * (Real(1.0) / sqrt(length2));
-}
-
-// entry: (angle from the mirror direction towards n over alpha, log2(sharpness alpha^2), weight, fresnelWeight).
-// `x` is incidenceTangent(n, wo); cosineOut = dot(n, wo) > 0.
-FN SpecularLobe specularTableLobe(IN(Vec4) entry, IN(Vec3) n, IN(Vec3) x, IN(Real) cosineOut, IN(Real) alpha) {
-  Real sine = sqrt(max(Real(0.0), (Real(1.0) - cosineOut) * (Real(1.0) + cosineOut)));
-  Vec3 mirror = n * cosineOut - x * sine;
-  Vec3 towardsN = n * sine + x * cosineOut;
-  Real angle = entry.x * alpha;
-  SpecularLobe lobe;
-  lobe.axis = mirror * cos(angle) + towardsN * sin(angle);
-  lobe.sharpness = pow(Real(2.0), entry.y) / (alpha * alpha);
-  lobe.weight = entry.z;
-  lobe.fresnelWeight = entry.w;
-  return lobe;
 }
 
 // ---- the clamped cosine's pull on a lobe ------------------------------------------------------------------------------------------

@@ -226,11 +226,6 @@ KERNEL(displayEncode) {
     y[3 * map + 2] = c.z;
   }
 }
-KERNEL(specularTableCoordinate) {
-  Vec2 at = specularTableCoordinate(x.v[0], x.v[1]);
-  y[0] = at.x;
-  y[1] = at.y;
-}
 KERNEL(incidenceTangent) {
   Vec3 t = incidenceTangent(vectorAt(x, 0), vectorAt(x, 3));
   y[0] = t.x;
@@ -244,17 +239,6 @@ KERNEL(cosineWeightedAxis) {
   y[2] = a.z;
 }
 KERNEL(alphaUnderLight) { y[0] = alphaUnderLight(x.v[0], x.v[1]); }
-// Table entry (0..3), alpha (4), cosine to the viewer (5), in the frame n = z, x = x.
-KERNEL(specularTableLobe) {
-  SpecularLobe lobe = specularTableLobe(Vec4(x.v[0], x.v[1], x.v[2], x.v[3]), Vec3(Real(0.0), Real(0.0), Real(1.0)),
-                                        Vec3(Real(1.0), Real(0.0), Real(0.0)), x.v[5], x.v[4]);
-  y[0] = lobe.axis.x;
-  y[1] = lobe.axis.y;
-  y[2] = lobe.axis.z;
-  y[3] = lobe.sharpness;
-  y[4] = lobe.weight;
-  y[5] = lobe.fresnelWeight;
-}
 KERNEL(shadingNormalTowards) {
   Vec3 n = shadingNormalTowards(vectorAt(x, 0), vectorAt(x, 3));
   y[0] = n.x;

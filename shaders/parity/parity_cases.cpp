@@ -496,9 +496,6 @@ void addDisplay(Registry& r) {
 }
 
 void addSpecular(Registry& r) {
-  r.add(CHIARO_CASE(specularTableCoordinate, 2, 2, scalars(2), "roughness, cosine in [0, 1]; error over max(value, .01): 1e-7 absolute, a texel is 1e-2", [](const float*) { return 0.01 / kFloor; }), [](Generator& g, auto& out) {
-    out.insert(out.end(), {g.spoil(static_cast<float>(g.uniform(0, 1))), g.spoil(static_cast<float>(g.uniform(0, 1)))});
-  });
   r.add(CHIARO_CASE(incidenceTangent, 6, 3, {{0, 3}}, "unit n, wo above it"), [](Generator& g, auto& out) {
     const glm::vec3 n(g.direction());
     glm::vec3 wo = g.partner(n, 3.0);
@@ -515,12 +512,6 @@ void addSpecular(Registry& r) {
   r.add(CHIARO_CASE(alphaUnderLight, 2, 1, scalars(1), "alpha in [1e-4, 1], sharpness >= 0"), [](Generator& g, auto& out) {
     out.insert(out.end(), {static_cast<float>(g.logUniform(1e-4, 1)), static_cast<float>(g.logUniform(1e-6, 1e6))});
   });
-  r.add(CHIARO_CASE(specularTableLobe, 6, 6, {{0, 3}, {3, 1}, {4, 1}, {5, 1}}, "entries of the fitted table, alpha .01..1, cosine .001..1"),
-        [](Generator& g, auto& out) {
-          for (const auto& [low, high] : {std::pair{-2.0, 2.0}, {-3.0, 3.0}, {0.0, 1.0}, {0.0, 1.0}}) out.push_back(static_cast<float>(g.uniform(low, high)));
-          out.push_back(static_cast<float>(g.logUniform(0.01, 1)));
-          out.push_back(static_cast<float>(g.logUniform(1e-3, 1)));
-        });
   r.add(CHIARO_CASE(reflectanceTableLobe, 7, 8, {{0, 3}, {3, 1}, {4, 1}, {5, 1}, {6, 2}}, "entries of the fitted tables, width .01..1, cosine .001..1"),
         [](Generator& g, auto& out) {
           for (const auto& [low, high] : {std::pair{-3.0, 3.0}, {-3.0, 4.0}, {0.0, 1.0}, {0.0, 1.0}, {-1.5, 1.5}}) out.push_back(static_cast<float>(g.uniform(low, high)));

@@ -1,9 +1,8 @@
 // Reflectance models other than glTF's GGX, and strings of lobes for any model; read by shade.glsl. Compiled for scenes that ask for it:
 // REFLECTANCE_MODELS (a material has such a model), MODEL_LAYERS (where its table starts), LOBES (a fixed number of lobes for every material).
-#include "shaders/lobe/reflectance.glsl"
 #include "shaders/lobe/elongated.glsl"
 
-// runtime/render/reflectance_textures.h: the eight layers of each table, then its albedo (what F0 scales, what Fresnel adds).
+// runtime/render/reflectance_textures.h: the layers of each table, then its albedo (what F0 scales, what Fresnel adds).
 layout(binding = 16) uniform sampler2DArray modelTable;
 const int kModelLayers[kModelCount] = MODEL_LAYERS;
 
@@ -15,42 +14,13 @@ ReflectanceModel modelOf(int kind, float alphaT, float alphaB) {
 
 vec3 tangentFrame(Surface s, vec3 w) { return vec3(dot(w, s.t), dot(w, s.b), dot(w, s.n)); }
 
-vec2 modelTableAt(int kind, float parameter, float cosineOut) {
-  vec2 size = vec2(textureSize(modelTable, 0).xy);
-  return (reflectanceTableCoordinate(modelWidth(kind, parameter), cosineOut) * (size - 1.0) + 0.5) / size;
-}
-
 // Of an anisotropic surface the mean of both directions'.
 vec2 modelAlbedo(Surface s, ReflectanceModel m) {
-  float layer = float(kModelLayers[s.kind] + kReflectanceEntries);
+  float layer = float(kModelLayers[s.kind] + reflectanceEntries(s.kind));
   float cosineOut = dot(s.n, s.wo);
-  vec2 albedo = textureLod(modelTable, vec3(modelTableAt(s.kind, m.x, cosineOut), layer), 0.0).xy;
+  vec2 albedo = textureLod(modelTable, vec3(reflectanceTableAt(modelTable, s.kind, m.x, cosineOut), layer), 0.0).xy;
   if (m.x == m.y) return albedo;
-  return 0.5 * (albedo + textureLod(modelTable, vec3(modelTableAt(s.kind, m.y, cosineOut), layer), 0.0).xy);
-}
-
-// Nine fitted lobes: five in the plane of incidence, two pairs beside it.
-vec3 tableReflection(Surface s, Transfer t, ReflectanceModel m, vec2 albedo, float broad) {
-  float cosineOut = dot(s.n, s.wo);
-  vec3 x = incidenceTangent(s.n, s.wo);
-  vec3 y = cross(s.n, x);
-  float width = modelWidth(s.kind, m.x);
-  vec2 at = modelTableAt(s.kind, m.x, cosineOut);
-  float first = float(kModelLayers[s.kind]);
-  vec2 elevations = textureLod(modelTable, vec3(at, first + float(kReflectanceEntries - 1)), 0.0).xy;
-  float least = 1.0e-3 * (albedo.x + albedo.y);
-  vec3 base = vec3(0.0), edge = vec3(0.0);
-  for (int k = 0; k < kReflectanceLobes; ++k) {
-    int group = k < 5 ? k : 5 + (k - 5) / 2;
-    vec4 entry = textureLod(modelTable, vec3(at, first + float(group)), 0.0);
-    if (entry.z + entry.w < least) continue;
-    float elevation = k < 5 ? 0.0 : elevations[group - 5] * ((k & 1) == 1 ? 1.0 : -1.0);
-    SpecularLobe lobe = reflectanceTableLobe(entry, elevation, s.n, x, y, cosineOut, width);
-    vec3 radiance = lobeRadiance(s, t, lobe.axis, lobe.sharpness, broad);
-    base += radiance * lobe.weight;
-    edge += radiance * lobe.fresnelWeight;
-  }
-  return s.f0 * base + s.f90 * edge;
+  return 0.5 * (albedo + textureLod(modelTable, vec3(reflectanceTableAt(modelTable, s.kind, m.y, cosineOut), layer), 0.0).xy);
 }
 
 void addStringLobe(Surface s, Transfer t, SphericalGaussian lobe, float broad, vec3 localOut, inout vec3 base, inout vec3 edge, inout vec2 weights) {
@@ -101,7 +71,7 @@ vec3 modelReflection(Surface s, Transfer t, ReflectanceModel m, vec2 albedo) {
   float broad = broadVisibility(t, 2.0 * dot(s.n, s.wo) * s.n - s.wo);
 #endif
 #if LOBES == 0
-  if (m.x == m.y) return tableReflection(s, t, m, albedo, broad);
+  if (m.x == m.y) return fittedReflection(s, t, modelTable, float(kModelLayers[s.kind]), s.kind, m.x, albedo, broad);
 #endif
   return stringReflection(s, t, m, stringLobes(m, tangentFrame(s, s.wo)), albedo, broad);
 }

@@ -14,8 +14,7 @@
 #ifndef LOBES
 #define LOBES 0
 #endif
-#include "shaders/lobe/specular.glsl"
-#include "shaders/lobe/ndf.glsl"
+#include "shaders/lobe/reflectance.glsl"
 #include "shaders/lobe/sh.glsl"
 #include "shaders/lobe/display.glsl"
 #include "shaders/stage/transfer.glsl"
@@ -26,10 +25,9 @@
 layout(std430, binding = 5) readonly buffer LightVisibilityBuffer { uint lightVisibility[]; };  // light_visibility.comp
 #endif
 
-layout(binding = 9) uniform sampler2DArray specularTable;  // runtime/brdf/specular_table.h
+layout(binding = 9) uniform sampler2DArray ggxTable;  // runtime/brdf/reflectance_table.h
 layout(binding = 10) uniform sampler2D albedoTable;
 
-const int kTableLobes = 20;
 const int kAnisotropicTerms = 3;
 // Lobes broader than this see the vertex's visible fractions instead of the half-space picture of the SSDF.
 const float kBroadFrom = 4.0;
@@ -263,31 +261,43 @@ vec3 roughReflection(Surface s, Transfer t, vec3 albedo) {
   return result;
 }
 
-vec3 smoothReflection(Surface s, Transfer t, vec3 albedo) {
+vec2 reflectanceTableAt(sampler2DArray table, int kind, float parameter, float cosineOut) {
+  vec2 size = vec2(textureSize(table, 0).xy);
+  return (reflectanceTableCoordinate(modelWidth(kind, parameter), cosineOut) * (size - 1.0) + 0.5) / size;
+}
+
+// The fitted lobes of a round model of this width or exponent; `first`: layer at which its table starts. Lobes that carry next to nothing of the albedo
+// are left out.
+vec3 fittedReflection(Surface s, Transfer t, sampler2DArray table, float first, int kind, float parameter, vec2 albedo, float broad) {
   float cosineOut = dot(s.n, s.wo);
   vec3 x = incidenceTangent(s.n, s.wo);
+  vec3 y = cross(s.n, x);
+  vec2 at = reflectanceTableAt(table, kind, parameter, cosineOut);
+  int singles = reflectanceSingles(kind);
+  vec4 elevations = textureLod(table, vec3(at, first + float(reflectanceEntries(kind) - 1)), 0.0);
+  float least = 1.0e-3 * (albedo.x + albedo.y);
+  vec3 base = vec3(0.0), edge = vec3(0.0);
+  for (int k = 0; k < reflectanceLobeCount(kind); ++k) {
+    int pair = (k - singles) >> 1;
+    vec4 entry = textureLod(table, vec3(at, first + float(k < singles ? k : singles + pair)), 0.0);
+    if (entry.z + entry.w < least) continue;
+    float elevation = k < singles ? 0.0 : elevations[pair] * (((k - singles) & 1) == 0 ? 1.0 : -1.0);
+    SpecularLobe lobe = reflectanceTableLobe(entry, elevation, s.n, x, y, cosineOut, modelWidth(kind, parameter));
+    vec3 radiance = lobeRadiance(s, t, lobe.axis, lobe.sharpness, broad);
+    base += radiance * lobe.weight;
+    edge += radiance * lobe.fresnelWeight;
+  }
+  return s.f0 * base + s.f90 * edge;
+}
+
+vec3 smoothReflection(Surface s, Transfer t, vec3 albedo) {
 #if LEVELS > 0
   float broad = 1.0;
 #else
-  float broad = broadVisibility(t, s.n * (2.0 * cosineOut) - s.wo);
+  float broad = broadVisibility(t, s.n * (2.0 * dot(s.n, s.wo)) - s.wo);
 #endif
+  if (!anisotropic(s)) return fittedReflection(s, t, ggxTable, 0.0, kGgx, s.alphaT, albedo.xy, broad);
   vec3 base = vec3(0.0), edge = vec3(0.0);
-  if (!anisotropic(s)) {
-    vec2 at;
-    vec2 unit = specularTableCoordinate(s.roughness, cosineOut);
-    vec2 size = vec2(textureSize(specularTable, 0).xy);
-    at = (unit * (size - 1.0) + 0.5) / size;
-    float least = 1.0e-3 * (albedo.x + albedo.y);
-    for (int k = 0; k < kTableLobes; ++k) {
-      vec4 entry = textureLod(specularTable, vec3(at, float(k)), 0.0);
-      if (entry.z + entry.w < least) continue;
-      SpecularLobe lobe = specularTableLobe(entry, s.n, x, cosineOut, s.alphaT);
-      vec3 radiance = lobeRadiance(s, t, lobe.axis, lobe.sharpness, broad);
-      base += radiance * lobe.weight;
-      edge += radiance * lobe.fresnelWeight;
-    }
-    return s.f0 * base + s.f90 * edge;
-  }
   float baseWeight = 0.0, edgeWeight = 0.0;
   int parts = anisotropicPartCount(max(s.alphaT / s.alphaB, s.alphaB / s.alphaT));
   for (int j = 0; j < kAnisotropicTerms; ++j) {

@@ -409,7 +409,7 @@ BrdfStudy studyBrdfs(bool quick, int threads, const std::function<void(const std
   for (const int kind : {kCookTorrance, kBlinnPhong, kGgx, kBeckmann, kWard}) {
     const std::string name = kNames[kind];
     progress("fitting " + name, 0.0);
-    const ReflectanceTable table = makeReflectanceTable(kind, ReflectanceTable::kWidths, ReflectanceTable::kCosines, threads);
+    const ReflectanceTable& table = reflectanceTableOf(kind);
     ModelStudy one = studyModel(kind, table, quick, threads, [&](double done) { progress("measuring " + name, done); });
     study.figures.push_back(std::move(one.figure));
     study.models.insert(study.models.end(), one.errors.begin(), one.errors.end());

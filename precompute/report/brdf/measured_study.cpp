@@ -251,7 +251,7 @@ MeasuredStudy studyMeasured(const std::vector<std::filesystem::path>& files, boo
       continue;
     const std::string stage = std::string("lobes of ") + modelJsonName(kind);
     progress(stage, 0.0);
-    const ReflectanceTable table = makeReflectanceTable(kind, ReflectanceTable::kWidths, ReflectanceTable::kCosines, threads);
+    const ReflectanceTable& table = reflectanceTableOf(kind);
     parallelBlocks(threads, items.size(), [&](std::size_t i) {
       MeasuredMaterial& m = study.materials[i];
       if (m.best.kind != kind) return;
