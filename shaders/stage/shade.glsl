@@ -208,6 +208,35 @@ vec3 diffuseLight(Surface s, Transfer t) {
   return taped(kTapedIrradiance, s.n, 0.0, irradiance);
 }
 
+vec2 reflectanceTableAt(sampler2DArray table, int kind, float parameter, float cosineOut) {
+  vec2 size = vec2(textureSize(table, 0).xy);
+  return (reflectanceTableCoordinate(modelWidth(kind, parameter), cosineOut) * (size - 1.0) + 0.5) / size;
+}
+
+// The fitted lobes of a round model of this width or exponent; `first`: layer at which its table starts. Lobes that carry next to nothing of the albedo
+// are left out.
+vec3 fittedReflection(Surface s, Transfer t, sampler2DArray table, float first, int kind, float parameter, vec2 albedo, float broad) {
+  float cosineOut = dot(s.n, s.wo);
+  vec3 x = incidenceTangent(s.n, s.wo);
+  vec3 y = cross(s.n, x);
+  vec2 at = reflectanceTableAt(table, kind, parameter, cosineOut);
+  int singles = reflectanceSingles(kind);
+  vec4 elevations = textureLod(table, vec3(at, first + float(reflectanceEntries(kind) - 1)), 0.0);
+  float least = 1.0e-3 * (albedo.x + albedo.y);
+  vec3 base = vec3(0.0), edge = vec3(0.0);
+  for (int k = 0; k < reflectanceLobeCount(kind); ++k) {
+    int pair = (k - singles) >> 1;
+    vec4 entry = textureLod(table, vec3(at, first + float(k < singles ? k : singles + pair)), 0.0);
+    if (entry.z + entry.w < least) continue;
+    float elevation = k < singles ? 0.0 : elevations[pair] * (((k - singles) & 1) == 0 ? 1.0 : -1.0);
+    SpecularLobe lobe = reflectanceTableLobe(entry, elevation, s.n, x, y, cosineOut, modelWidth(kind, parameter));
+    vec3 radiance = lobeRadiance(s, t, lobe.axis, lobe.sharpness, broad);
+    base += radiance * lobe.weight;
+    edge += radiance * lobe.fresnelWeight;
+  }
+  return s.f0 * base + s.f90 * edge;
+}
+
 #if REFLECTANCE_MODELS || LOBES > 0
 #include "shaders/stage/models.glsl"
 #endif
@@ -259,35 +288,6 @@ vec3 roughReflection(Surface s, Transfer t, vec3 albedo) {
     result += frame.sgLights[l].amplitude.rgb * (sgUnitIntegral(light.w) * cosineMean * f * v) * fresnelColor(s, fresnel);
   }
   return result;
-}
-
-vec2 reflectanceTableAt(sampler2DArray table, int kind, float parameter, float cosineOut) {
-  vec2 size = vec2(textureSize(table, 0).xy);
-  return (reflectanceTableCoordinate(modelWidth(kind, parameter), cosineOut) * (size - 1.0) + 0.5) / size;
-}
-
-// The fitted lobes of a round model of this width or exponent; `first`: layer at which its table starts. Lobes that carry next to nothing of the albedo
-// are left out.
-vec3 fittedReflection(Surface s, Transfer t, sampler2DArray table, float first, int kind, float parameter, vec2 albedo, float broad) {
-  float cosineOut = dot(s.n, s.wo);
-  vec3 x = incidenceTangent(s.n, s.wo);
-  vec3 y = cross(s.n, x);
-  vec2 at = reflectanceTableAt(table, kind, parameter, cosineOut);
-  int singles = reflectanceSingles(kind);
-  vec4 elevations = textureLod(table, vec3(at, first + float(reflectanceEntries(kind) - 1)), 0.0);
-  float least = 1.0e-3 * (albedo.x + albedo.y);
-  vec3 base = vec3(0.0), edge = vec3(0.0);
-  for (int k = 0; k < reflectanceLobeCount(kind); ++k) {
-    int pair = (k - singles) >> 1;
-    vec4 entry = textureLod(table, vec3(at, first + float(k < singles ? k : singles + pair)), 0.0);
-    if (entry.z + entry.w < least) continue;
-    float elevation = k < singles ? 0.0 : elevations[pair] * (((k - singles) & 1) == 0 ? 1.0 : -1.0);
-    SpecularLobe lobe = reflectanceTableLobe(entry, elevation, s.n, x, y, cosineOut, modelWidth(kind, parameter));
-    vec3 radiance = lobeRadiance(s, t, lobe.axis, lobe.sharpness, broad);
-    base += radiance * lobe.weight;
-    edge += radiance * lobe.fresnelWeight;
-  }
-  return s.f0 * base + s.f90 * edge;
 }
 
 vec3 smoothReflection(Surface s, Transfer t, vec3 albedo) {
