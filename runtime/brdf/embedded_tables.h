@@ -5,7 +5,7 @@
 
 namespace chiaro {
 
-/// ReflectanceTable::entries of a round model (kCookTorrance .. kGgx) at its default size, four numbers each. Throws std::out_of_range.
+/// ReflectanceTable::entries of a model (kCookTorrance .. kAshikhminShirley, the last with equal exponents) at its default size, four numbers each. Throws std::out_of_range.
 std::span<const float> embeddedTable(int kind);
 
 }  // namespace chiaro

@@ -1,4 +1,4 @@
-// Fits the tables of every round reflectance model and writes them as C++: fit_tables OUTPUT.cpp. Runs when the library is built.
+// Fits the tables of every reflectance model, of Ashikhmin and Shirley's with equal exponents, and writes them as C++: fit_tables OUTPUT.cpp. Runs when the library is built.
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
@@ -15,7 +15,7 @@ int main(int count, char** arguments) {
   std::ofstream out(arguments[1]);
   out.precision(9);  // enough for every float
   out << "#include \"runtime/brdf/embedded_tables.h\"\n\n#include <array>\n\nnamespace chiaro {\nnamespace {\n\n";
-  constexpr int kinds[] = {lobe64::kCookTorrance, lobe64::kBeckmann, lobe64::kBlinnPhong, lobe64::kWard, lobe64::kGgx};
+  constexpr int kinds[] = {lobe64::kCookTorrance, lobe64::kBeckmann, lobe64::kBlinnPhong, lobe64::kWard, lobe64::kGgx, lobe64::kAshikhminShirley};
   for (const int kind : kinds) {
     out << "constexpr float kTable" << kind << "[] = {";
     const char* separator = "";
@@ -24,7 +24,7 @@ int main(int count, char** arguments) {
     out << "};\n\n";
   }
   out << "}  // namespace\n\nstd::span<const float> embeddedTable(int kind) {\n"
-         "  static constexpr std::array<std::span<const float>, 5> tables{";
+         "  static constexpr std::array<std::span<const float>, 6> tables{";
   for (const int kind : kinds) out << (kind == kinds[0] ? "" : ", ") << "kTable" << kind;
   out << "};\n  return tables.at(static_cast<std::size_t>(kind));\n}\n\n}  // namespace chiaro\n";
   out.close();

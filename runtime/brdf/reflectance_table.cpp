@@ -26,7 +26,7 @@ ReflectanceTable unpacked(int kind) {
 
 const ReflectanceTable& reflectanceTableOf(int kind) {
   static const std::array tables{unpacked(lobe64::kCookTorrance), unpacked(lobe64::kBeckmann), unpacked(lobe64::kBlinnPhong), unpacked(lobe64::kWard),
-                                 unpacked(lobe64::kGgx)};
+                                 unpacked(lobe64::kGgx), unpacked(lobe64::kAshikhminShirley)};
   return tables.at(static_cast<std::size_t>(kind));
 }
 

@@ -15,13 +15,13 @@ namespace chiaro {
 /// and what Fresnel adds, (1 - wo.wh)^5, by non-negative least squares; GGX's bring its exact albedo.
 struct ReflectanceTable {
   static constexpr int kWidths = 17, kCosines = 25;  ///< enough: interpolation costs less than the fit's own error
-  int kind = 0;                                      ///< kCookTorrance .. kGgx
+  int kind = 0;                                      ///< kCookTorrance .. kAshikhminShirley
   int widthCount = 0;
   int cosineCount = 0;
   std::vector<glm::vec4> entries;
 };
 
-/// The table of default size of a round model (kCookTorrance .. kGgx), as the build fitted it (reflectance_fit.h).
+/// The table of default size of a model (kAshikhminShirley: of equal exponents), as the build fitted it (reflectance_fit.h).
 const ReflectanceTable& reflectanceTableOf(int kind);
 
 /// A lobe as it stands in the tangent frame of a viewer in the xz plane.
