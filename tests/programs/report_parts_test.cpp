@@ -212,7 +212,7 @@ TEST(Tables, UndefinedFiguresAreNullAndEmpty) {
   EXPECT_TRUE(json["cases"][0]["roughness"].is_null());
   EXPECT_EQ(json["cases"][0]["undefined_pixels"], 1);
   const std::string csv = reportCsv(comparisons);
-  EXPECT_THAT(csv, HasSubstr("case,\"sunny, \"\"late\"\"\",,,,,,,4,1,0,,,,"));
+  EXPECT_THAT(csv, HasSubstr("case,\"sunny, \"\"late\"\"\",,,,,,,,4,1,0,,,,"));
   EXPECT_TRUE(std::isnan(lowestPsnr(comparisons)));
 }
 

@@ -7,7 +7,7 @@
 namespace chiaro {
 namespace {
 
-constexpr int kGaussians = 4;  // as runtime/brdf/specular_table.h has them
+constexpr int kGaussians = 4;  // the most that shaders/lobe/ggx.glsl fits
 
 }  // namespace
 

@@ -241,7 +241,7 @@ ImageBudget imageBudget(const BakedScene& baked, const ImageBudgetSettings& sett
 
   for (const auto& [exact, what, cause] : {std::tuple{Exact::visibility, "visible shares traced", "environment prefilter"},
                                            std::tuple{Exact::environment, "environment integrated over lobes", "light and visibility apart"},
-                                           std::tuple{Exact::product, "light times visibility over lobes", "warp: lobes of light directions"}}) {
+                                           std::tuple{Exact::product, "light times visibility over lobes", "lobes of light directions"}}) {
     renderer.replay(budget.camera, draw, answeredUpTo(traced.tape, exact));
     stage(what, cause, renderer.readRadiance());
   }

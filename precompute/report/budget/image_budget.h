@@ -58,7 +58,7 @@ struct ImageBudget {
 
 /// Draws under an environment alone (the scene's lights are left out), one point a pixel, and replaces stages one after another:
 /// upsampling; visible shares, traced lobe by lobe; the prefiltered environment, integrated lobe by lobe; the product of both means, by the integral of light
-/// times visibility (with it the fixed lobes of diffuse and rough light); lobes over light directions, by the distribution's Gaussians at half vectors; these, by
+/// times visibility (with it the fixed lobes of diffuse and rough light); lobes over light directions (warp and fit), by the distribution's Gaussians at half vectors; these, by
 /// the exact reflectance; filtered textures, by the texels that rays meet. The renderer records what its pixels ask, answers are traced, and it draws again with them. Makes a headless OpenGL context. Same
 /// figures for any number of threads. Throws Error.
 ImageBudget imageBudget(const BakedScene& baked, const ImageBudgetSettings& settings, const ProgressHandler& progress);

@@ -18,7 +18,7 @@ struct TracedLightSettings {
   std::uint32_t seed = 0;
 };
 
-/// What no change of a lobe or a map can give better; of one thread.
+/// For one thread.
 class TracedLight {
  public:
   /// All arguments must outlive it. lights: those that the renderer takes apart from the rest of the environment, world space.
@@ -38,7 +38,7 @@ class TracedLight {
   /// Cosine-weighted mean of (radiance - lights) times visibility over the lobe; nothing where next to none of it is above the horizon.
   std::optional<glm::dvec3> rest(glm::vec3 axis, double sharpness);
 
-  /// Light towards a viewer by two reflectances at once, from the same directions: the exact one, and `roundGgx` of it (see gaussianReflectance()).
+  /// Light towards a viewer by two reflectances at once, from the same directions: the exact one, and with Gaussians for its distribution (gaussianOverExact()).
   struct Reflected {
     glm::dvec3 exact{0.0}, gaussian{0.0};
   };

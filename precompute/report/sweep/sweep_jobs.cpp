@@ -122,7 +122,7 @@ void bakeInParallel(const SweepBakes& bakes, const std::vector<SweepPoint>& poin
   Children children;
   std::size_t next = 0, done = 0;
   while (done < all) {
-    progress("bakes, " + std::to_string(children.count()) + " at a time", static_cast<double>(done) / static_cast<double>(all));
+    progress("bakes", static_cast<double>(done) / static_cast<double>(all));
     while (next < all && children.count() < static_cast<std::size_t>(jobs)) {
       auto words = arguments;
       for (const auto& word : {std::string("--bake-point"), std::to_string(waiting[next]), std::string("--bake-threads"), std::to_string(each)}) words.push_back(word);
