@@ -34,9 +34,9 @@ Shape shapeOf(int kind) { return {lobe64::reflectanceSingles(kind), lobe64::refl
 slice::Weighting weightingOf(int kind) { return kind == lobe64::kGgx ? slice::Weighting{1e-4, 1.0} : slice::Weighting{1e-3, 0.5}; }
 
 // Of a neighbour: far below the errors fitted, enough to keep idle lobes in place. These pulls and the view that a table starts from were found by
-// trial: with others some neighbours come to share out the work differently, and what lies between them suffers.
+// trial: with others some neighbours come to share out the work differently, and what lies between them suffers (by up to .3 in equation (11)).
 double pullOf(int kind) { return kind == lobe64::kGgx ? 3e-5 : 1e-3; }
-constexpr double kStartColumn = 14.0 / 24.0;
+double startOf(int kind) { return (kind == lobe64::kGgx ? 14.0 : 18.0) / 24.0; }
 constexpr double kSweepPull = 3e-4;
 constexpr int kSteps = 40, kSweeps = 6;
 
@@ -85,7 +85,7 @@ ReflectanceTable makeReflectanceTable(int kind, int widthCount, int cosineCount,
   };
   // From one well-conditioned view of the sharpest row, each texel from its neighbours in the row before and in its own, so that the same
   // lobe does the same work everywhere and entries interpolate. The two halves of a row are independent.
-  const int start = static_cast<int>(std::lround(kStartColumn * (cosineCount - 1)));
+  const int start = static_cast<int>(std::lround(startOf(kind) * (cosineCount - 1)));
   double ignored = 0.0;
   const VectorXd first = slice::fitFromNothing(shape, sliceAt(0, start), ignored);
   for (int i = 0; i < widthCount; ++i) {

@@ -315,7 +315,7 @@ TEST(GltfScene, MaterialsAndTextures) {
   file.root["samplers"] = {{{"wrapS", 33071}, {"wrapT", 33648}, {"magFilter", 9728}}};
   file.root["textures"] = {
       {{"source", 0}, {"sampler", 0}}, {{"source", 1}}, {{"extensions", {{"EXT_texture_webp", {{"source", 0}}}}}}};
-  file.root["extensionsUsed"] = {"KHR_materials_emissive_strength", "KHR_materials_anisotropy", "KHR_materials_sheen"};
+  file.root["extensionsUsed"] = {"KHR_materials_emissive_strength", "KHR_materials_anisotropy", "KHR_materials_iridescence"};
   file.root["materials"] = {
       {{"name", "a"},
        {"pbrMetallicRoughness",
@@ -360,7 +360,7 @@ TEST(GltfScene, MaterialsAndTextures) {
   EXPECT_EQ(scene.textures[0].wrapT, Wrap::mirroredRepeat);
   EXPECT_TRUE(scene.textures[0].nearest);
   EXPECT_EQ(scene.textures[1].wrapS, Wrap::repeat);
-  EXPECT_THAT(file.warnings, testing::IsSupersetOf({HasSubstr("KHR_materials_sheen is ignored"), HasSubstr("TEXCOORD_1"),
+  EXPECT_THAT(file.warnings, testing::IsSupersetOf({HasSubstr("KHR_materials_iridescence is ignored"), HasSubstr("TEXCOORD_1"),
                                                     HasSubstr("roughnessFactor"), HasSubstr("texture 2")}));
 
   std::filesystem::remove(file.folder / "col our.png");

@@ -182,7 +182,7 @@ ModelStudy studyModel(int kind, const ReflectanceTable& table, bool quick, int t
   Curve curves[] = {{"1 lobe, isotropic warp", {}, {}, true},
                     {"3-lobe warp", {}, {}},
                     {"5-lobe warp", {}, {}},
-                    {"9 fitted lobes (ours)", {}, {}},
+                    {std::to_string(lobe64::reflectanceLobeCount(kind)) + " fitted lobes (ours)", {}, {}},
                     {"ours, views to 75 deg", {}, {}},
                     {"16 factored terms", {}, {}, true},
                     {"64 factored terms", {}, {}, true},
