@@ -37,10 +37,11 @@ struct FrameBlock {
   glm::vec4 directions[kMaxDirections];    // 1664
   SgLightBlock sgLights[kMaxSgLights];     // 2688
   PunctualLightBlock punctualLights[kMaxPunctualLights];  // 3712
+  glm::vec4 wetnessS{0.0f}, wetnessT{0.0f};               // 5760
 };
 static_assert(offsetof(FrameBlock, eye) == 192 && offsetof(FrameBlock, irradiance) == 240);
 static_assert(offsetof(FrameBlock, restRadiance) == 640 && offsetof(FrameBlock, sgLights) == 2688);
-static_assert(offsetof(FrameBlock, punctualLights) == 3712 && sizeof(FrameBlock) == 5760, "std140 says otherwise");
+static_assert(offsetof(FrameBlock, punctualLights) == 3712 && sizeof(FrameBlock) == 5792, "std140 says otherwise");
 
 struct VertexBlock {
   glm::vec4 positionU{0.0f};

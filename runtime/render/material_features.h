@@ -12,6 +12,7 @@ struct MaterialFeatures {
   unsigned models = 0;         ///< bit of every Reflectance in use but GGX
   bool coat = false;
   bool sheen = false;
+  bool wetness = false;        ///< Renderer::setWetness(); no material asks for it
   bool layerTextures = false;  ///< of KHR_materials_specular, _clearcoat and _sheen
 
   bool operator==(const MaterialFeatures&) const = default;

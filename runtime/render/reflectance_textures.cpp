@@ -23,15 +23,13 @@ std::vector<glm::vec4> albedoOf(const ReflectanceTable& table) {
   return albedo;
 }
 
-constexpr int kMostUnits = 24;
-
-void requireTextureUnits() {
+void requireTextureUnits(int most) {
   GLint units = 0;
   glGetIntegerv(GL_MAX_TEXTURE_IMAGE_UNITS, &units);
-  if (units < kMostUnits)
+  if (units < most)
     throw Error(ExitCode::failed, "materials",
-                "the OpenGL driver has " + std::to_string(units) + " texture units a stage, these materials take " + std::to_string(kMostUnits),
-                "leave CHIARO_materials_reflectance, KHR_materials_sheen and textures of specular and coat out");
+                "the OpenGL driver has " + std::to_string(units) + " texture units a stage, these materials take " + std::to_string(most),
+                "leave CHIARO_materials_reflectance, KHR_materials_sheen, textures of specular and coat, and wetness out");
 }
 
 }  // namespace
@@ -52,7 +50,7 @@ gl::Texture makeSheenAlbedoTexture(const MaterialFeatures& features) {
 }
 
 gl::Texture makeReflectanceTextures(const MaterialFeatures& features) {
-  if (features.models != 0 || features.sheen || features.layerTextures) requireTextureUnits();
+  if (features.models != 0 || features.sheen || features.wetness || features.layerTextures) requireTextureUnits(features.wetness ? 25 : 24);
   if (features.models == 0) return {};
   gl::Texture texture;
   for (int r = 0; r < kReflectanceCount; ++r) {

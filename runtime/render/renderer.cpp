@@ -75,7 +75,8 @@ struct Renderer::Impl {
   std::vector<Light> lights;
   std::optional<GpuEnvironment> environment;
   gl::Program depthProgram, shadeProgram, backgroundProgram, resolveProgram, displayProgram;
-  gl::Texture ggxTable, albedoTable, modelTable, sheenAlbedoTable;
+  gl::Texture ggxTable, albedoTable, modelTable, sheenAlbedoTable, wetnessTexture;
+  glm::vec4 wetnessS{0.0f}, wetnessT{0.0f};
   std::optional<MaterialFeatures> built;  // what the programs and modelTable are for
   int builtLobes = 0;
   bool builtUpsampler = false;
@@ -109,9 +110,28 @@ struct Renderer::Impl {
     albedoTable.upload(0, GL_RGB, GL_FLOAT, albedo.entries.data());
   }
 
+  MaterialFeatures features() const {
+    MaterialFeatures all = scene.features();
+    all.wetness = static_cast<bool>(wetnessTexture);
+    return all;
+  }
+
+  void setWetness(const Wetness& wetness) {
+    if (wetness.width < 1 || wetness.height < 1 || wetness.texels.size() != static_cast<std::size_t>(wetness.width) * static_cast<std::size_t>(wetness.height))
+      throw Error(ExitCode::failed, "setWetness", std::to_string(wetness.texels.size()) + " texels for " + std::to_string(wetness.width) + " x " + std::to_string(wetness.height), "pass one per place");
+    if (!wetnessTexture || wetnessTexture.width() != wetness.width || wetnessTexture.height() != wetness.height) {
+      wetnessTexture = gl::Texture::make2d(GL_R8, wetness.width, wetness.height, 0);
+      wetnessTexture.wrap(GL_REPEAT, GL_REPEAT);
+    }
+    wetnessTexture.upload(0, GL_RED, GL_UNSIGNED_BYTE, wetness.texels.data());
+    wetnessTexture.generateMipmaps();
+    wetnessS = wetness.s;
+    wetnessT = wetness.t;
+  }
+
   /// The programs and tables that the scene's materials ask for; nothing where they are there.
   void build(const RenderSettings& settings) {
-    const MaterialFeatures& features = scene.features();
+    const MaterialFeatures features = this->features();
     const bool same = built == features && builtLobes == settings.lobes;
     if (same && (!upsamples(settings) || builtUpsampler)) return;
     auto defines = features.defines(kReflectanceLayers);
@@ -143,7 +163,7 @@ struct Renderer::Impl {
   void buildTape(const RenderSettings& settings) {
     build(settings);
     if (tapeProgram) return;
-    auto defines = scene.features().defines(kReflectanceLayers);
+    auto defines = features().defines(kReflectanceLayers);
     for (auto& define : shadingDefines(settings.lobes)) defines.push_back(std::move(define));
     defines.emplace_back("TAPE 1");
     tapeProgram = gl::Program::load({{GL_VERTEX_SHADER, "shaders/stage/mesh.vert"}, {GL_FRAGMENT_SHADER, "shaders/stage/shade.frag"}}, defines);
@@ -243,7 +263,9 @@ struct Renderer::Impl {
   void prepareBodies(const Camera& camera, const RenderSettings& settings) {
     for (std::size_t b = 0; b < bodies.size(); ++b) {
       Body& body = bodies[b];
-      const FrameBlock block = frameBlock(camera, settings, *environment, scene, lights, body.worldFromRest);
+      FrameBlock block = frameBlock(camera, settings, *environment, scene, lights, body.worldFromRest);
+      block.wetnessS = wetnessS;
+      block.wetnessT = wetnessT;
       body.clipFromRestBefore = body.clipFromRest;
       body.clipFromRest = block.clipFromWorld;
       body.frame.write(0, std::span<const FrameBlock>(&block, 1));
@@ -404,6 +426,7 @@ struct Renderer::Impl {
     albedoTable.bind(10);
     if (modelTable) modelTable.bind(16);
     if (sheenAlbedoTable) sheenAlbedoTable.bind(23);
+    if (wetnessTexture) wetnessTexture.bind(24);
     noAttributes.bind();
     shaded->framebuffer.bind();
     glEnable(GL_TEXTURE_CUBE_MAP_SEAMLESS);
@@ -476,6 +499,8 @@ void Renderer::setEnvironment(const SgEnvironment& environment) {
 }
 void Renderer::setLights(const std::vector<Light>& lights) { impl_->setLights(lights); }
 void Renderer::setMaterials(const std::vector<Material>& materials) { impl_->scene.setMaterials(materials); }
+
+void Renderer::setWetness(const Wetness& wetness) { impl_->setWetness(wetness); }
 
 void Renderer::setPoses(const std::vector<glm::mat4>& worldFromBaked) { impl_->setPoses(worldFromBaked); }
 

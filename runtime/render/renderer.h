@@ -14,6 +14,7 @@
 #include "runtime/environment/sg_environment.h"
 #include "runtime/render/render_settings.h"
 #include "runtime/render/shading_tape.h"
+#include "runtime/render/wetness.h"
 
 namespace chiaro {
 
@@ -39,6 +40,10 @@ class Renderer {
   /// Material parameters may change every frame at no other cost than this upload; count and textures as in the scene. The first time
   /// that a model or a coat comes in which no material had before costs a compilation, and a model its table.
   void setMaterials(const std::vector<Material>& materials);
+
+  /// On top of the materials. May change every frame at no other cost than the upload; the first map, and each one of another size, costs more: the
+  /// first a compilation. Throws Error (failed) where the texels do not fill the size.
+  void setWetness(const Wetness& wetness);
 
   /// Where each mesh of the scene (Scene::meshNames) stands: rotations and shifts from where it was baked, the identity at first. A moved mesh keeps
   /// the transfer that it was baked with, in its own frame: what hid it there still does, and its shadow on others stays behind.

@@ -1,10 +1,11 @@
 #pragma once
-/// Materials that change every frame: a shower that passes over the scene.
+/// Materials that change every frame: a shower that passes over the scene, puddle by puddle.
 
 #include <string>
 #include <vector>
 
 #include "assets/scene/scene.h"
+#include "runtime/render/wetness.h"
 
 namespace chiaro {
 
@@ -13,14 +14,17 @@ enum class MaterialAnimation { none, wetness };
 /// "none", "wetness". Throws Error (usage).
 MaterialAnimation materialAnimationFromName(const std::string& name);
 
-/// 0 (dry) at the start, 1 half way through a period of 4 seconds, 0 at its end; smooth.
-float wetnessAt(double seconds);
+/// Rain from above on a scene: hollows get wet first and dry last.
+class Shower {
+ public:
+  explicit Shower(const Scene& scene);
 
-/// The materials with water in and on them (after Lagarde, Water drop 3b: Physically based wet surfaces, 2013): what is not metal darkens,
-/// as light that scatters below a film of water meets the surface more often, and all gets smoother. Textures go on modulating both.
-std::vector<Material> wetMaterials(const std::vector<Material>& dry, float wetness);
+  /// All dry at the start, all soaked half way through a period of 4 seconds, dry at its end; smooth. The reference holds until the next call.
+  const Wetness& at(double seconds);
 
-/// Of `materials`, `seconds` after the animation began.
-std::vector<Material> animated(MaterialAnimation animation, const std::vector<Material>& materials, double seconds);
+ private:
+  std::vector<float> height_;  ///< of each texel of the map: the share of all that lie lower
+  Wetness wetness_;
+};
 
 }  // namespace chiaro

@@ -115,8 +115,9 @@ void declareViewOptions(CLI::App& app, ViewOptions& options, ViewOptionTexts& te
   app.add_option("--roughness", texts.roughness, "Perceptual roughness of every material, 0 to 1")->type_name("R")->group(view);
   app.add_option("--metallic", texts.metallic, "Metalness of every material, 0 to 1")->type_name("M")->group(view);
 
-  app.add_option("--animate", texts.animate, "none, or wetness: every material gets wet and dry again, in 4 seconds or 240 frames of a run that ends")
+  app.add_option("--animate", texts.animate, "none, or wetness: a shower wets everything puddle by puddle and it dries again, in 4 seconds or 240 frames of a run that ends")
       ->type_name("NAME")->capture_default_str()->group(view);
+  app.add_option("--start", options.startSeconds, "Where the animation starts, in seconds")->type_name("S")->capture_default_str()->group(view);
   app.add_option("--model", texts.model, "Reflectance model of every material: " + reflectanceNameList())->type_name("NAME")->group(view);
   app.add_flag("--energy-compensation", options.energyCompensation, "GGX gives back what scatters more than once between its facets")->group(view);
   app.add_option("--lobes", options.lobes, "1, 3, 5, 7 or 9 lobes strung for every material (GGX: three times as many); 0 is the best known")
@@ -159,6 +160,7 @@ void finishViewOptions(ViewOptions& options, const ViewOptionTexts& texts) {
   requireLobes(options.lobes, "--lobes");
   requireFinestResolution(options.prefilter, "--prefilter");
   options.animation = materialAnimationFromName(texts.animate);
+  if (!(std::abs(options.startSeconds) <= 1e6)) throw usageError("--start", "must lie between -1e6 and 1e6", "give seconds such as 1.5");
   for (const auto& text : texts.lights) options.lights.push_back(parseLightSpec(text));
   for (const auto& [value, option] : {std::pair{texts.roughness, "--roughness"}, std::pair{texts.metallic, "--metallic"}})
     if (value && !(*value >= 0.0f && *value <= 1.0f)) throw usageError(option, "must lie between 0 and 1", "give a number such as 0.4");

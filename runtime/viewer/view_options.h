@@ -48,6 +48,7 @@ struct ViewOptions {
   UpsampleWeights upsampleWeights = UpsampleWeights::lobe;
   RecomputeBudget recompute;
   MaterialAnimation animation = MaterialAnimation::none;
+  double startSeconds = 0.0;              ///< of the animation
   int frames = 1;
   int threads = 0;
   std::filesystem::path picture;          ///< .png or .exr; empty: none

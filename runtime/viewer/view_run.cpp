@@ -2,8 +2,10 @@
 
 #include <epoxy/gl.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "assets/file.h"
 #include "runtime/gl/context.h"
@@ -114,10 +116,12 @@ void runFrames(const ViewOptions& options, const LoadedScene& scene, const Camer
   // The first frame of a driver compiles and moves things; where frames are compared it does not count.
   const int warmUp = options.frames > 1 ? 1 : 0;
   std::vector<FrameTimings> timings;
+  std::optional<Shower> shower;
+  if (options.animation == MaterialAnimation::wetness) shower.emplace(scene.baked.scene);
   for (int frame = -warmUp; frame < options.frames; ++frame) {
     if (frame == 0) start = secondsNow();
-    if (options.animation != MaterialAnimation::none)
-      renderer.setMaterials(animated(options.animation, scene.baked.scene.materials, (frame + 1) / 60.0));
+    if (shower)
+      renderer.setWetness(shower->at(options.startSeconds + std::max(frame, 0) / 60.0));
     renderer.render(camera, settings);
     if (frame >= 0) timings.push_back(renderer.timings());
     if (afterFrame) afterFrame(renderer, frame);

@@ -98,6 +98,7 @@ class InteractiveView {
         renderer_(std::make_unique<Renderer>(loaded_.baked)),
         state_(panelFor(options, loaded_)) {
     if (!options.quiet) warnOfLeftOut(loaded_);
+    if (options.animation == MaterialAnimation::wetness) shower_.emplace(loaded_.baked.scene);
     choose(0);
   }
 
@@ -214,8 +215,8 @@ class InteractiveView {
   /// at rest costs nothing: what was drawn last is shown again, once upsampling has shaded every pixel.
   void render(glm::ivec2 size) {
     const RenderSettings wanted = wantedSettings(size);
-    if (options_.animation != MaterialAnimation::none) {
-      renderer_->setMaterials(animated(options_.animation, state_.materials, secondsNow() - startedAt_));
+    if (shower_) {
+      renderer_->setWetness(shower_->at(options_.startSeconds + secondsNow() - startedAt_));
       stale_ = true;
     }
     const bool changed = stale_ || !same(wanted, wanted_) || !same(orbit_.camera(), drawnFrom_);
@@ -292,6 +293,7 @@ class InteractiveView {
     if (environment_ != nullptr) renderer->setEnvironment(environment_->light);
     renderer_ = std::move(renderer);
     loaded_ = std::move(loaded);
+    if (shower_) shower_.emplace(loaded_.baked.scene);
     const glm::ivec2 size = glm::max(window_.framebufferSize(), glm::ivec2(1));
     orbit_ = OrbitCamera(defaultCamera(loaded_.baked.scene, static_cast<float>(size.x) / static_cast<float>(size.y)), boundsOf(loaded_.baked.scene));
     state_.materials = loaded_.baked.scene.materials;
@@ -363,6 +365,7 @@ class InteractiveView {
   int settledFrames_ = 0;  // drawn since anything changed
   double changedAt_ = 0.0;
   const double startedAt_ = secondsNow();  // of an animation
+  std::optional<Shower> shower_;
   double millisecondsPerSample_ = std::numeric_limits<double>::infinity();
   bool saveWanted_ = false;
 };

@@ -30,4 +30,6 @@ layout(std140, binding = 0) uniform FrameBlock {
   vec4 directions[kMaxDirections];          // their world axes
   SgLightBlock sgLights[kMaxSgLights];
   PunctualLightBlock punctualLights[kMaxPunctualLights];
+  vec4 wetnessS;                            // texture coordinates of a baked world position
+  vec4 wetnessT;
 } frame;

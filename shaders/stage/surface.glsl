@@ -4,6 +4,13 @@ in vec3 worldNormal;
 in vec4 worldTangent;
 in vec2 texcoord[kTextures];
 
+#ifndef WETNESS
+#define WETNESS 0
+#endif
+#if WETNESS
+#include "shaders/stage/wetness.glsl"
+#endif
+
 uniform int firstIndex;  // of this draw in the index list
 
 int firstCornerHere() { return firstIndex + 3 * gl_PrimitiveID; }
@@ -37,15 +44,22 @@ Surface surfaceHere(MaterialBlock m, vec4 baseColor) {
     s.roughness *= texel.g;
     metallic *= texel.b;
   }
-  s.roughness = clamp(s.roughness, 0.0, 1.0);
+  float smoother = 1.0;
+  vec3 color = baseColor.rgb;
+#if WETNESS
+  float wetness = wetnessAt(s.position);
+  smoother = wetRoughness(wetness);
+  color *= wetColor(wetness, metallic);
+#endif
+  s.roughness = clamp(s.roughness, 0.0, 1.0) * smoother;
   float alpha = clampAlpha(s.roughness * s.roughness);
   s.alphaT = alpha;
   s.alphaB = alpha;
   s.kind = m.textures.w;
   bool given = m.anisotropy.z > 0.0;
   if (given) {
-    float scale = m.surface.y > 0.0 ? s.roughness / m.surface.y : 0.0;
-    if (!hasTexture(m, kHasMetallicRoughness)) scale = 1.0;
+    float scale = smoother;
+    if (hasTexture(m, kHasMetallicRoughness)) scale = m.surface.y > 0.0 ? s.roughness / m.surface.y : 0.0;
     s.alphaT = clampAlpha(m.anisotropy.z * scale * scale);
     s.alphaB = clampAlpha(m.anisotropy.w * scale * scale);
     s.roughness = sqrt(min(s.alphaT, s.alphaB));
@@ -72,13 +86,13 @@ Surface surfaceHere(MaterialBlock m, vec4 baseColor) {
   if (hasTexture(m, kHasSpecular)) specular *= texture(specularTexture, texcoord[5]).a;
   if (hasTexture(m, kHasSpecularColor)) atNormal *= texture(specularColorTexture, texcoord[6]).rgb;
 #endif
-  s.f0 = mix(min(atNormal, vec3(1.0)) * specular, baseColor.rgb, metallic);
+  s.f0 = mix(min(atNormal, vec3(1.0)) * specular, color, metallic);
   s.f90 = mix(specular, 1.0, metallic);
   if (m.fixedF0.w > 0.5) {
     s.f0 = m.fixedF0.rgb;
     s.f90 = 1.0;
   }
-  s.diffuse = baseColor.rgb * (1.0 - metallic);
+  s.diffuse = color * (1.0 - metallic);
 #if CLEARCOAT
   s.coat = m.coat.x;
   float coatRoughness = m.coat.y;
