@@ -155,6 +155,14 @@ vec3 lightMean(int l, vec3 axis, float sharpness, out float productSharpness) {
 float reflectance(Surface s, vec3 wi, float alphaT, float alphaB, out float fresnel);
 #include "shaders/stage/lamps.glsl"
 
+// What an SG light sharper than an elongated reflection gives directly, by the BRDF itself, and not through the lobes: these are too few to follow its
+// narrow direction and its tail. Passes over where the light is about as broad as the narrow direction.
+float directShare(Surface s, float lightSharpness) {
+  if (!anisotropic(s)) return 0.0;
+  float narrow = min(s.alphaT, s.alphaB);
+  return smoothstep(0.1, 0.4, lightSharpness * 2.0 * narrow * narrow * max(dot(s.n, s.wo), 0.1));
+}
+
 // Light that arrives through one reflection lobe.
 vec3 lobeRadiance(Surface s, Transfer t, vec3 axis, float sharpness, float broad) {
   float distance = ssdfAt(t, axis);
@@ -172,10 +180,17 @@ vec3 lobeRadiance(Surface s, Transfer t, vec3 axis, float sharpness, float broad
       storedLightShare(t, l, lightSharpness, lightDistance);
       float towards = lightSharpness / (sharpness + lightSharpness);
       vec3 between = mix(axis, frame.sgLights[l].axisSharpness.xyz, towards);
-      radiance += mean * (visibleShare(t, between, productSharpness, mix(distance, lightDistance, towards), broad) - own);
+      float through = 1.0 - directShare(s, lightSharpness);
+      radiance += mean * (through * visibleShare(t, between, productSharpness, mix(distance, lightDistance, towards), broad) - own);
+    }
+  } else
+#endif
+  if (anisotropic(s)) {
+    for (int l = 0; l < frame.counts.x; ++l) {
+      float productSharpness;
+      radiance -= directShare(s, frame.sgLights[l].axisSharpness.w) * lightMean(l, axis, sharpness, productSharpness);
     }
   }
-#endif
   radiance = taped(kTapedLobe, axis, sharpness, max(radiance, vec3(0.0)) * horizonShare(s, axis, sharpness));
   return radiance + lampsUnderLobe(s, t, axis, sharpness) * horizonShare(s, axis, sharpness);
 }
@@ -263,6 +278,27 @@ float reflectance(Surface s, vec3 wi, float alphaT, float alphaB, out float fres
   return ggxDistributionAnisotropic(localHalf, alphaT, alphaB) * ggxVisibilityAnisotropic(localOut, localIn, alphaT, alphaB);
 }
 
+// An SG light's reflection by the BRDF itself, widened by the light.
+vec3 lightReflection(Surface s, Transfer t, int l) {
+  vec4 light = frame.sgLights[l].axisSharpness;
+  float cosineMean = clampedCosineMean(dot(s.n, light.xyz), light.w);
+  if (cosineMean < 1.0e-5) return vec3(0.0);
+  float fresnel;
+  float f = reflectance(s, cosineWeightedAxis(light.xyz, light.w, s.n), alphaUnderLight(s.alphaT, light.w), alphaUnderLight(s.alphaB, light.w), fresnel);
+  float v = lightShare(t, l, light.w) * horizonShare(s, light.xyz, light.w);
+  return frame.sgLights[l].amplitude.rgb * (sgUnitIntegral(light.w) * cosineMean * f * v) * fresnelColor(s, fresnel);
+}
+
+vec3 directReflection(Surface s, Transfer t) {
+  vec3 sum = vec3(0.0);
+  if (!anisotropic(s)) return sum;
+  for (int l = 0; l < frame.counts.x; ++l) {
+    float direct = directShare(s, frame.sgLights[l].axisSharpness.w);
+    if (direct > 0.0) sum += direct * lightReflection(s, t, l);
+  }
+  return sum;
+}
+
 vec3 roughReflection(Surface s, Transfer t, vec3 albedo) {
   float directionSharpness = frame.pyramid.w;
   vec3 base = vec3(0.0), edge = vec3(0.0);
@@ -283,15 +319,7 @@ vec3 roughReflection(Surface s, Transfer t, vec3 albedo) {
   }
   vec3 result = s.f0 * base * (albedo.x / max(baseWeight, 1.0e-6)) + s.f90 * edge * (albedo.y / max(edgeWeight, 1.0e-6));
   result = max(result, vec3(0.0));
-  for (int l = 0; l < frame.counts.x; ++l) {
-    vec4 light = frame.sgLights[l].axisSharpness;
-    float cosineMean = clampedCosineMean(dot(s.n, light.xyz), light.w);
-    if (cosineMean < 1.0e-5) continue;
-    float fresnel;
-    float f = reflectance(s, cosineWeightedAxis(light.xyz, light.w, s.n), alphaUnderLight(s.alphaT, light.w), alphaUnderLight(s.alphaB, light.w), fresnel);
-    float v = lightShare(t, l, light.w) * horizonShare(s, light.xyz, light.w);
-    result += frame.sgLights[l].amplitude.rgb * (sgUnitIntegral(light.w) * cosineMean * f * v) * fresnelColor(s, fresnel);
-  }
+  for (int l = 0; l < frame.counts.x; ++l) result += lightReflection(s, t, l);
   return result;
 }
 
@@ -316,7 +344,7 @@ vec3 smoothReflection(Surface s, Transfer t, vec3 albedo) {
       edgeWeight += lobe.fresnelWeight;
     }
   }
-  return s.f0 * base * (albedo.x / max(baseWeight, 1.0e-6)) + s.f90 * edge * (albedo.y / max(edgeWeight, 1.0e-6));
+  return s.f0 * base * (albedo.x / max(baseWeight, 1.0e-6)) + s.f90 * edge * (albedo.y / max(edgeWeight, 1.0e-6)) + directReflection(s, t);
 }
 
 #if SHEEN
