@@ -51,7 +51,7 @@ vec3 stringReflection(Surface s, Transfer t, ReflectanceModel m, int count, vec2
       for (int k = 0; k < count; ++k) addStringLobe(s, t, lobes[k], broad, localOut, base, edge, weights);
     }
   }
-  return s.f0 * base * (albedo.x / max(weights.x, 1.0e-6)) + s.f90 * edge * (albedo.y / max(weights.y, 1.0e-6));
+  return s.f0 * base * (albedo.x / max(weights.x, 1.0e-6)) + s.f90 * edge * (albedo.y / max(weights.y, 1.0e-6)) + directReflection(s, t);
 }
 
 // How many lobes a string takes: by how elongated the lobe of light is.

@@ -153,6 +153,7 @@ vec3 lightMean(int l, vec3 axis, float sharpness, out float productSharpness) {
 }
 
 float reflectance(Surface s, vec3 wi, float alphaT, float alphaB, out float fresnel);
+vec3 directReflection(Surface s, Transfer t);
 #include "shaders/stage/lamps.glsl"
 
 // What an SG light sharper than an elongated reflection gives directly, by the BRDF itself, and not through the lobes: these are too few to follow its
