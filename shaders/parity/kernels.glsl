@@ -177,6 +177,11 @@ KERNEL(ggxDistribution) { y[0] = ggxDistribution(x.v[0], x.v[1]); }
 KERNEL(ggxDistributionAnisotropic) { y[0] = ggxDistributionAnisotropic(vectorAt(x, 0), x.v[3], x.v[4]); }
 KERNEL(ggxVisibility) { y[0] = ggxVisibility(x.v[0], x.v[1], x.v[2]); }
 KERNEL(ggxVisibilityAnisotropic) { y[0] = ggxVisibilityAnisotropic(vectorAt(x, 0), vectorAt(x, 3), x.v[6], x.v[7]); }
+KERNEL(ggxAlbedoAnisotropic) {
+  Vec2 albedo = ggxAlbedoAnisotropic(vectorAt(x, 0), x.v[3], x.v[4]);
+  y[0] = albedo.x;
+  y[1] = albedo.y;
+}
 KERNEL(sheenDistribution) { y[0] = sheenDistribution(x.v[0], x.v[1]); }
 KERNEL(sheenReflectance) { y[0] = sheenReflectance(x.v[0], x.v[1], x.v[2], x.v[3]); }
 KERNEL(fresnelSchlick) {

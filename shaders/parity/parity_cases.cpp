@@ -348,6 +348,10 @@ void addGgx(Registry& r) {
     push(out, localDirection(g));
     out.insert(out.end(), {alpha(g), alpha(g)});
   });
+  r.add(CHIARO_CASE(ggxAlbedoAnisotropic, 5, 2, {{0, 2}}, "wo unit; both parts as a vector"), [=](Generator& g, auto& out) {
+    push(out, localDirection(g));
+    out.insert(out.end(), {alpha(g), alpha(g)});
+  });
   // The power 1 / (2 alpha), up to 102, multiplies the error of the logarithm.
   Case sheenD = CHIARO_CASE(sheenDistribution, 2, 1, scalars(1), "cosine in [0, .995], alpha in [.0049, 1]");
   sheenD.tolerance = 5e-5;

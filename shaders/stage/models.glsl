@@ -12,8 +12,6 @@ ReflectanceModel modelOf(int kind, float alphaT, float alphaB) {
   return reflectanceModel(kind, exponent ? 2.0 / (alphaT * alphaT) - 2.0 : alphaT, exponent ? 2.0 / (alphaB * alphaB) - 2.0 : alphaB);
 }
 
-vec3 tangentFrame(Surface s, vec3 w) { return vec3(dot(w, s.t), dot(w, s.b), dot(w, s.n)); }
-
 // Of an anisotropic surface the mean of both directions'.
 vec2 modelAlbedo(Surface s, ReflectanceModel m) {
   float layer = float(kModelLayers[s.kind] + reflectanceEntries(s.kind));

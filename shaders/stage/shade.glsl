@@ -62,6 +62,7 @@ struct Surface {
 vec3 fresnelColor(Surface s, float weight) { return s.f0 * (1.0 - weight) + s.f90 * weight; }
 
 bool anisotropic(Surface s) { return s.alphaT != s.alphaB; }
+vec3 tangentFrame(Surface s, vec3 w) { return vec3(dot(w, s.t), dot(w, s.b), dot(w, s.n)); }
 
 vec3 samplePoint2(sampler2D table, vec2 unit, out vec2 at) {
   vec2 size = vec2(textureSize(table, 0));
@@ -273,10 +274,10 @@ float reflectance(Surface s, vec3 wi, float alphaT, float alphaB, out float fres
 #endif
   float cosineOut = dot(s.n, s.wo);
   if (alphaT == alphaB) return ggxDistribution(max(dot(s.n, wh), 0.0), alphaT) * ggxVisibility(cosineOut, cosineIn, alphaT);
-  vec3 localHalf = vec3(dot(wh, s.t), dot(wh, s.b), max(dot(wh, s.n), 0.0));
-  vec3 localOut = vec3(dot(s.wo, s.t), dot(s.wo, s.b), cosineOut);
-  vec3 localIn = vec3(dot(wi, s.t), dot(wi, s.b), cosineIn);
-  return ggxDistributionAnisotropic(localHalf, alphaT, alphaB) * ggxVisibilityAnisotropic(localOut, localIn, alphaT, alphaB);
+  vec3 localHalf = tangentFrame(s, wh);
+  localHalf.z = max(localHalf.z, 0.0);
+  return ggxDistributionAnisotropic(localHalf, alphaT, alphaB) *
+         ggxVisibilityAnisotropic(tangentFrame(s, s.wo), vec3(dot(wi, s.t), dot(wi, s.b), cosineIn), alphaT, alphaB);
 }
 
 // An SG light's reflection by the BRDF itself, widened by the light.
@@ -394,10 +395,12 @@ vec3 coatReflection(Surface s, Transfer t) {
 }
 #endif
 
-// Of an anisotropic surface the mean of both directions' (within .03 for strength up to .6).
+// z, what the diffuse part goes without, is the mean of both directions' on an anisotropic surface.
 vec3 ggxAlbedo(Surface s) {
   float cosineOut = dot(s.n, s.wo);
-  return 0.5 * (albedoAt(sqrt(s.alphaT), cosineOut) + albedoAt(sqrt(s.alphaB), cosineOut));
+  vec3 albedo = albedoAt(sqrt(s.alphaT), cosineOut);
+  if (!anisotropic(s)) return albedo;
+  return vec3(ggxAlbedoAnisotropic(tangentFrame(s, s.wo), s.alphaT, s.alphaB), 0.5 * (albedo.z + albedoAt(sqrt(s.alphaB), cosineOut).z));
 }
 
 float diffuseShareOf(Surface s, vec3 albedo) { return 1.0 - (largestOf(s.f0) * (1.0 - albedo.z) + s.f90 * albedo.z); }

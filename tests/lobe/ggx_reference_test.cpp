@@ -124,6 +124,38 @@ TEST(GgxMixture, PublishedExample) {
 }
 
 // Estevez and Kulla's distribution holds all microfacets: its projected area is 1.
+// Against a plain sum over half vectors' slopes; the limit is what the header of the function says.
+TEST(Ggx, AnisotropicAlbedo) {
+  double worst = 0.0, worstFresnel = 0.0;
+  for (const auto& [ax, ay] : {std::pair{0.4, 0.09}, {0.09, 0.4}, {1.0, 0.3}, {1.0, 0.02}, {0.5, 0.25}, {0.02, 0.01}, {0.3, 0.3}})
+    for (double z : {1.0, 0.8, 0.5, 0.25, 0.1})
+      for (double turn : {0.0, 0.7, 1.5}) {
+        const double s = std::sqrt(1.0 - z * z);
+        const Vec3 wo(s * std::cos(turn), s * std::sin(turn), z);
+        double albedo = 0.0, fresnel = 0.0;
+        constexpr int kRadii = 120, kTurns = 120;
+        for (int i = 0; i < kRadii; ++i)
+          for (int j = 0; j < kTurns; ++j) {
+            const double u = (i + 0.5) / kRadii, r = 0.7 * u / (1.0 - u), phi = (j + 0.5) / kTurns * kTwoPi;
+            const double x = ax * r * std::cos(phi), y = ay * r * std::sin(phi), hz = 1.0 / std::sqrt(1.0 + x * x + y * y);
+            const Vec3 wh(x * hz, y * hz, hz);
+            const double c = glm::dot(wo, wh);
+            const Vec3 wi = 2.0 * c * wh - wo;
+            if (!(c > 0.0 && wi.z > 0.0)) continue;
+            const double solidAngle = 4.0 * c * ax * ay * r * hz * hz * hz * 0.7 / ((1.0 - u) * (1.0 - u)) / kRadii * kTwoPi / kTurns;
+            const double reflected = ggxDistributionAnisotropic(wh, ax, ay) * ggxVisibilityAnisotropic(wo, wi, ax, ay) * wi.z * solidAngle;
+            albedo += reflected;
+            fresnel += reflected * std::pow(1.0 - c, 5);
+          }
+        const auto ours = ggxAlbedoAnisotropic(wo, ax, ay);
+        worst = std::max(worst, std::abs(ours.x + ours.y - albedo));
+        worstFresnel = std::max(worstFresnel, std::abs(ours.y - fresnel));
+      }
+  std::printf("anisotropic albedo off by at most %.4f, its Fresnel part by %.4f\n", worst, worstFresnel);
+  EXPECT_LE(worst, 0.027);
+  EXPECT_LE(worstFresnel, 0.016);
+}
+
 TEST(Sheen, DistributionIsNormalised) {
   for (const double alpha : {0.0049, 0.05, 0.3, 1.0}) {
     double sum = 0.0;

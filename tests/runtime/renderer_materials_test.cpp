@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "assets/builtin/builtin_scene.h"
+#include "assets/error.h"
 #include "assets/image/image.h"
 #include "precompute/reference/reference.h"
 #include "runtime/render/material_features.h"
@@ -88,6 +89,68 @@ TEST(RendererMaterials, RoundModels) {
   phong.reflectanceWidth = {{200.0f, 200.0f}};
   phong.reflectanceF0 = {{0.3f, 0.6f, 0.9f}};
   expectClose("Blinn-Phong 200 of given F0", phong, 36);
+}
+
+// The sun's streak, the albedo of each view and the strings of lobes for all else: each alone costs ten and more where it is off.
+TEST(RendererMaterials, BrushedGgx) {
+  for (const auto& [roughness, anisotropy] : {std::pair{0.3f, 0.6f}, {0.15f, 0.5f}, {0.4f, 1.0f}}) {
+    Material brushed = metal(roughness);
+    brushed.anisotropyStrength = anisotropy;
+    expectClose("brushed GGX " + std::to_string(roughness) + ' ' + std::to_string(anisotropy), brushed, 37);
+  }
+}
+
+// A map of one wetness is a material that darkens and gets smoother; one of two is either, side by side.
+TEST(RendererMaterials, WetnessByTheTexel) {
+  Material dry = metal(0.6f);
+  dry.metallicFactor = 0.25f;
+  Material wet = dry;
+  wet.roughnessFactor *= 0.35f;
+  wet.baseColorFactor = glm::vec4(glm::vec3(dry.baseColorFactor) * (1.0f - 0.6f * 0.75f), 1.0f);
+  const BakedScene baked = sphereOf(dry);
+  const Camera camera = defaultCamera(baked.scene, 1);
+  Renderer renderer(baked);
+  renderer.setEnvironment(sunny().prepared);
+  const ImageRgba plain = drawn(renderer, camera);
+  const auto apart = [](const ImageRgba& a, const ImageRgba& b) {
+    double most = 0.0;
+    for (std::size_t i = 0; i < a.texels.size(); ++i)
+      for (int c = 0; c < 3; ++c)
+        most = std::max(most, static_cast<double>(std::abs(a.texels[i][c] - b.texels[i][c]) / (0.01f + std::abs(b.texels[i][c]))));
+    return most;
+  };
+  renderer.setMaterials({wet});
+  const ImageRgba expected = drawn(renderer, camera);
+  ASSERT_GT(apart(expected, plain), 0.1);
+  renderer.setMaterials({dry});
+  renderer.setWetness({1, 1, {0}});
+  EXPECT_LE(apart(drawn(renderer, camera), plain), 1e-5);
+  renderer.setWetness({1, 1, {255}});
+  const ImageRgba soaked = drawn(renderer, camera);
+  EXPECT_LE(apart(soaked, expected), 1e-3);  // the same numbers, multiplied in another order
+
+  // Half of the sphere: every pixel but those of the middle is one or the other.
+  Wetness halves{64, 1, std::vector<std::uint8_t>(64, 0)};
+  std::fill(halves.texels.begin() + 32, halves.texels.end(), std::uint8_t{255});
+  const float size = 2.0f * boundsOf(baked.scene).diagonal();
+  const glm::vec3 right = glm::vec3(camera.worldFromCamera[0]) / size;
+  halves.s = glm::vec4(right, 0.5f - glm::dot(right, boundsOf(baked.scene).center()));
+  renderer.setWetness(halves);
+  const ImageRgba both = drawn(renderer, camera);
+  int likeDry = 0, likeWet = 0, neither = 0;
+  for (std::size_t i = 0; i < both.texels.size(); ++i) {
+    if (!(both.texels[i].a > 0.99f)) continue;
+    const float toDry = glm::length(both.texels[i] - plain.texels[i]), toWet = glm::length(both.texels[i] - soaked.texels[i]);
+    if (toDry <= 1e-5f * glm::length(plain.texels[i])) ++likeDry;
+    else if (toWet <= 1e-5f * glm::length(soaked.texels[i])) ++likeWet;
+    else ++neither;
+  }
+  EXPECT_GT(likeDry, 300);
+  EXPECT_GT(likeWet, 300);
+  EXPECT_LT(neither, 200);
+
+  EXPECT_THROW(renderer.setWetness({2, 2, {0, 1, 2}}), Error);
+  EXPECT_NO_THROW(testContext().debugLog().requireClean("wetness"));
 }
 
 TEST(RendererMaterials, ElongatedModels) {
