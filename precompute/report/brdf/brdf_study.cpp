@@ -75,6 +75,31 @@ Reconstruction tabulated(const ReflectanceTable& table, double width) {
   };
 }
 
+/// Brushed GGX as the renderer draws it: strings by half vectors, scaled to its albedo.
+Reconstruction brushedGgx(double alphaX, double alphaY) {
+  return [=](const Vec3& wo) -> Slice {
+    constexpr int kTerms = 3;
+    const int parts = anisotropicPartCount(std::max(alphaX / alphaY, alphaY / alphaX));
+    std::vector<SphericalGaussian> all;
+    double whole = 0.0;
+    for (int term = 0; term < kTerms; ++term)
+      for (int k = 0; k < parts; ++k) {
+        const SpecularLobe lobe = anisotropicPart(ggxMixtureTerm(kTerms, term), parts, k, Vec3(0, 0, 1), Vec3(1, 0, 0), Vec3(0, 1, 0), alphaX, alphaY, wo);
+        const double weight = lobe.weight + lobe.fresnelWeight;
+        if (!(weight > 1e-4)) continue;
+        whole += weight;
+        all.push_back(sphericalGaussian(lobe.axis, lobe.sharpness, weight * vmfAmplitude(lobe.sharpness)));
+      }
+    const auto albedo = ggxAlbedoAnisotropic(wo, alphaX, alphaY);
+    for (auto& lobe : all) lobe.amplitude *= (albedo.x + albedo.y) / std::max(whole, 1e-6);
+    return [all](const Vec3& wi) {
+      double sum = 0.0;
+      for (const auto& lobe : all) sum += sgEvaluate(lobe, wi);
+      return sum;
+    };
+  };
+}
+
 /// Strung lobes with matched amplitudes, for models of any shape.
 Reconstruction elongated(const ReflectanceModel& model, int count) {
   return [=](const Vec3& wo) -> Slice {
@@ -352,9 +377,10 @@ std::vector<ElongatedError> studyElongated(bool quick, int threads) {
   std::vector<ElongatedError> errors(kinds.size());
   parallelBlocks(threads, kinds.size(), [&](std::size_t i) {
     const ReflectanceModel model = reflectanceModel(kinds[i].kind, kinds[i].x, kinds[i].y);
-    errors[i] = {.model = kNames[kinds[i].kind], .x = kinds[i].x, .y = kinds[i].y, .byCount = {}};
+    errors[i] = {.model = kNames[kinds[i].kind], .x = kinds[i].x, .y = kinds[i].y, .byCount = {}, .drawn = kUndefined};
     for (std::size_t k = 0; k < errors[i].byCount.size(); ++k)
       errors[i].byCount[k] = viewError(model, elongated(model, ElongatedError::kCounts[k]), kWidestView, quadrature);
+    errors[i].drawn = model.kind == kGgx ? viewError(model, brushedGgx(model.x, model.y), kWidestView, quadrature) : kUndefined;
   });
   return errors;
 }

@@ -32,6 +32,7 @@ struct ElongatedError {
   std::string model;
   double x = 0.0, y = 0.0;  ///< widths or exponents along tangent and bitangent
   std::array<double, 4> byCount{};
+  double drawn = 0.0;  ///< of GGX, whose default in the renderer is longer strings by half vectors (specular.glsl): better in pictures, worse here; NaN: the above
 };
 
 struct BrdfStudy {

@@ -70,11 +70,11 @@ std::string brdfTable(const BrdfStudy& study) {
   text += "\nelongated models as lobes strung over light directions (GGX: three strings)\n" + padded("model", 18) +
           padded("x", 9) + padded("y", 9);
   for (const int count : ElongatedError::kCounts) text += padded(std::to_string(count) + " lobes", 12);
-  text += "\n";
+  text += padded("GGX as drawn", 14) + "\n";
   for (const ElongatedError& e : study.elongated) {
     text += padded(e.model, 18) + padded(formatted("%g", e.x), 9) + padded(formatted("%g", e.y), 9);
     for (const double error : e.byCount) text += padded(formatted("%.2e", error), 12);
-    text += "\n";
+    text += padded(formatted("%.2e", e.drawn), 14) + "\n";
   }
   if (!study.measured.empty()) text += measuredTable(study.measured);
   return text;
@@ -105,7 +105,8 @@ std::string brdfJson(const BrdfStudy& study, const std::string& version) {
                                  {"x", e.x},
                                  {"y", e.y},
                                  {"lobes", ElongatedError::kCounts},
-                                 {"error_75", numbers({e.byCount.begin(), e.byCount.end()})}});
+                                 {"error_75", numbers({e.byCount.begin(), e.byCount.end()})},
+                                 {"drawn_75", number(e.drawn)}});
   if (!study.measured.empty()) json["measured"] = measuredJson(study.measured);
   json["figures"] = figuresJson(study.figures);
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
@@ -128,8 +129,8 @@ std::string brdfPage(const BrdfStudy& study, const std::string& version) {
   html += figuresHtml(study.figures);
   html +=
       "</div>\n<h2>Equation (11), distribution, smooth factor and warp together</h2>\n<p class=\"soft\">Views from the normal to "
-      "75 degrees unless said. Ours: the nine lobes that a "
-      "shader reads.</p>\n<div class=\"wide\"><table><tr><th>model</th><th>m, alpha, n</th>";
+      "75 degrees unless said. Ours: the fitted lobes that a "
+      "shader reads, nine (GGX: sixteen).</p>\n<div class=\"wide\"><table><tr><th>model</th><th>m, alpha, n</th>";
   for (const Column& column : kColumns) html += "<th>" + std::string(column.title) + "</th>";
   html += "</tr>\n";
   for (const ModelError& e : study.models) {
@@ -142,13 +143,15 @@ std::string brdfPage(const BrdfStudy& study, const std::string& version) {
   }
   html +=
       "</table></div>\n<h2>Elongated models</h2>\n<p class=\"soft\">Lobes strung over light directions, fitted to the "
-      "reflectance at their axes; GGX takes three strings. Views to 75 "
+      "reflectance at their axes; GGX takes three strings, and is drawn by longer ones. Views to 75 "
       "degrees.</p>\n<div class=\"wide\"><table><tr><th>model</th><th>x</th><th>y</th>";
   for (const int count : ElongatedError::kCounts) html += "<th>" + std::to_string(count) + " lobes</th>";
+  html += "<th>GGX as drawn</th>";
   html += "</tr>\n";
   for (const ElongatedError& e : study.elongated) {
     html += "<tr><td>" + htmlText(e.model) + "</td><td>" + formatted("%g", e.x) + "</td><td>" + formatted("%g", e.y) + "</td>";
     for (const double error : e.byCount) html += "<td>" + formatted("%.2g", error) + "</td>";
+    html += "<td>" + formatted("%.2g", e.drawn) + "</td>";
     html += "</tr>\n";
   }
   html += "</table></div>\n";
