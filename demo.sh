@@ -39,6 +39,8 @@ picture sunny_turned --environment sunny --rotate-environment-deg 120
 picture sunny_rough --environment sunny --roughness 0.7
 picture sunny_ward_metal --environment sunny --model ward --roughness 0.4 --metallic 1
 picture windows_polished_metal --environment windows --roughness 0.15 --metallic 1
+picture sunny_shower_begins --environment sunny --animate wetness --start 0.8
+picture sunny_soaked --environment sunny --animate wetness --start 2
 "$bin/chiaro-view" "$out/ornament.glb" --headless --environment sunny --size 720x450 --frames 3 --json "$out/timings.json" --quiet
 
 say "comparing it with brute force"
