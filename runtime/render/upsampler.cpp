@@ -7,6 +7,7 @@
 namespace chiaro {
 namespace {
 
+constexpr float kDarkest = 0.02f;  // light that hardly shows, exposed
 constexpr std::size_t kUrgencyBytes = 68 * sizeof(std::uint32_t);  // shaders/stage/upsample_list.glsl
 
 /// In which order the pixels of a cell are shaded: each far from those just before it.
@@ -103,6 +104,8 @@ void Upsampler::bindSurfaces() const {
   for (int attachment = 1; attachment <= 4; ++attachment) glClearNamedFramebufferuiv(surfaces_.id(), GL_COLOR, attachment, nothing);
   surfaceProgram_.set("size", glm::vec2(size_));
   surfaceProgram_.set("depthScale", depthScale_);
+  surfaceProgram_.set("outlook", settings_.upsampleWeights == UpsampleWeights::lobe ? 1 : 0);
+  surfaceProgram_.set("darkest", kDarkest / settings_.exposure);
 }
 
 void Upsampler::setBody(int body, const glm::mat4& clipFromWorldBefore) const {
@@ -130,7 +133,7 @@ void Upsampler::shade(int bodies, const std::function<void(int)>& bindBody) cons
   setHistory(shadeProgram_);
   shadeProgram_.set("jitter", jitter_);
   shadeProgram_.set("cell", cell_);
-  shadeProgram_.set("darkest", 0.02f / settings_.exposure);
+  shadeProgram_.set("darkest", settings_.upsampleWeights == UpsampleWeights::lobe ? kDarkest : kDarkest / settings_.exposure);
   for (int body = 0; body < bodies; ++body) {
     bindBody(body);
     shadeProgram_.set("body", body);

@@ -34,7 +34,7 @@ FN Real lobeDistance(IN(Vec3) axis1, IN(Real) sharpness1, IN(Vec3) axis2, IN(Rea
 // For a choice among samples of which none may be alike: in (0, 1], falls with the square of the angle and never to 0. What lies between two
 // samples turns lobes by more than sharp ones are wide, so that all count as wide as that at least.
 CONST Real kTurnSharpness = Real(33.0);
-CONST Real kNearDistance = Real(0.05);
+CONST Real kNearDistance = Real(0.02);
 FN Real turnedSharpness(IN(Real) sharpness) {
   Real s = clampSharpness(sharpness);
   return s / (Real(1.0) + s / kTurnSharpness);

@@ -18,9 +18,13 @@ layout(location = 4) out uvec4 guide;
 layout(location = 5) out vec4 before;  // where it was in the frame before: pixels, window depth
 
 uniform int body;
+uniform bool outlook;    // take out what the light would be if nothing hid it
+uniform float darkest;   // light that hardly shows
 uniform mat4 clipFromWorldBefore;
 uniform vec2 size;
 uniform vec2 depthScale;
+
+const int kOpenLobes = 3;
 
 Guide guideOf(Surface s) {
   Guide g;
@@ -45,6 +49,46 @@ Guide guideOf(Surface s) {
   return g;
 }
 
+// The radiance that a lobe of the distribution of normals would bring with nothing before it.
+vec3 openReflection(Surface s, int kind, float alpha, vec3 n) {
+  bool exponent = modelHasExponent(kind);
+  float width = exponent ? 2.0 / (alpha * alpha) - 2.0 : alpha;
+  vec3 sum = vec3(0.0);
+  float weights = 0.0;
+  for (int i = 0; i < kOpenLobes; ++i) {
+    vec2 lobe = ndfMixtureLobe(kind, width, kOpenLobes, i);
+    if (!(lobe.x > 0.0)) continue;
+    SphericalGaussian warped = sgWarpIsotropic(sphericalGaussian(n, lobe.y, 1.0), s.wo);
+    float weight = lobe.x * sgUnitIntegral(lobe.y);
+    sum += weight * environmentMean(warped.axis, warped.sharpness);
+    weights += weight;
+  }
+  return sum / max(weights, 1.0e-20);
+}
+
+vec3 openDiffuse(vec3 n) {
+  float basis[25];
+  shEvaluate(n, basis);
+  vec3 sum = vec3(0.0);
+  for (int i = 0; i < 25; ++i) sum += basis[i] * frame.irradiance[i].rgb;
+  sum = max(sum, vec3(0.0));
+  for (int l = 0; l < frame.counts.x; ++l) {
+    vec4 light = frame.sgLights[l].axisSharpness;
+    sum += frame.sgLights[l].amplitude.rgb * (sgUnitIntegral(light.w) * clampedCosineMean(dot(n, light.xyz), light.w));
+  }
+  return sum * kOneOverPi;
+}
+
+void takeOutOpenLight(Surface s, inout Albedos a) {
+  vec3 reflection = openReflection(s, s.kind, sqrt(s.alphaT * s.alphaB), s.n);
+#if CLEARCOAT
+  float coat = 1.0 - throughCoat(s);
+  if (coat > 0.0) reflection = mix(reflection, openReflection(s, kGgx, clampAlpha(s.coatRoughness * s.coatRoughness), shadingNormalTowards(s.ng, s.wo)), coat);
+#endif
+  a.diffuse *= openDiffuse(s.n) + darkest;
+  a.reflected *= reflection + darkest;
+}
+
 void main() {
   MaterialBlock m = materials[materialIndex];
   vec4 baseColor = baseColorAt(m, texcoord[0]);
@@ -59,6 +103,7 @@ void main() {
   Albedos a;
   surfaceAlbedo(s, a.diffuse, a.reflected);
   a.slope = slope;
+  if (outlook) takeOutOpenLight(s, a);
   albedos = packAlbedos(a);
   guide = packGuide(guideOf(s));
   vec4 clip = clipFromWorldBefore * vec4(worldPosition, 1.0);
