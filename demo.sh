@@ -58,5 +58,5 @@ your own   $bin/chiaro-precompute scene.glb -o baked.glb
 END
 if [ "$window" = yes ]; then
   say "opening the viewer (close its window to end; --no-window leaves this out)"
-  exec "$bin/chiaro-view" "$out/ornament.glb" --animate wetness
+  exec "$bin/chiaro-view" "$out/ornament.glb" --animate wetness --moving knot
 fi

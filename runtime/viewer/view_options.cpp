@@ -117,7 +117,8 @@ void declareViewOptions(CLI::App& app, ViewOptions& options, ViewOptionTexts& te
 
   app.add_option("--animate", texts.animate, "none, or wetness: a shower wets everything puddle by puddle and it dries again, in 4 seconds or 240 frames of a run that ends")
       ->type_name("NAME")->capture_default_str()->group(view);
-  app.add_option("--start", options.startSeconds, "Where the animation starts, in seconds")->type_name("S")->capture_default_str()->group(view);
+  app.add_option("--moving", options.moving, "A mesh of the scene that turns about +Y through its middle, 30 degrees a second, of which a run that ends has 60 frames")->type_name("MESH")->group(view);
+  app.add_option("--start", options.startSeconds, "Where the animations start, in seconds")->type_name("S")->capture_default_str()->group(view);
   app.add_option("--model", texts.model, "Reflectance model of every material: " + reflectanceNameList())->type_name("NAME")->group(view);
   app.add_flag("--energy-compensation", options.energyCompensation, "GGX gives back what scatters more than once between its facets")->group(view);
   app.add_option("--lobes", options.lobes, "1, 3, 5, 7 or 9 lobes strung for every material (GGX: three times as many); 0 is the best known")

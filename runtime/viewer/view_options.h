@@ -25,6 +25,8 @@ enum class ViewMode {
   headless      ///< the same without a window
 };
 
+inline constexpr double kTurnDegreesPerSecond = 30.0;  // of ViewOptions::moving
+
 struct ViewOptions {
   std::filesystem::path scene;            ///< a baked .glb
   std::vector<std::string> environments;  ///< names or files; never empty after finishViewOptions()
@@ -48,6 +50,7 @@ struct ViewOptions {
   UpsampleWeights upsampleWeights = UpsampleWeights::lobe;
   RecomputeBudget recompute;
   MaterialAnimation animation = MaterialAnimation::none;
+  std::string moving;                     ///< a mesh that turns; empty: none
   double startSeconds = 0.0;              ///< of the animation
   int frames = 1;
   int threads = 0;

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "assets/file.h"
+#include "assets/scene/moving_mesh.h"
 #include "runtime/gl/context.h"
 #include "runtime/viewer/frame_statistics.h"
 
@@ -118,10 +119,13 @@ void runFrames(const ViewOptions& options, const LoadedScene& scene, const Camer
   std::vector<FrameTimings> timings;
   std::optional<Shower> shower;
   if (options.animation == MaterialAnimation::wetness) shower.emplace(scene.baked.scene);
+  std::optional<MovingMesh> moving;
+  if (!options.moving.empty()) moving.emplace(scene.baked.scene, options.moving);
   for (int frame = -warmUp; frame < options.frames; ++frame) {
     if (frame == 0) start = secondsNow();
-    if (shower)
-      renderer.setWetness(shower->at(options.startSeconds + std::max(frame, 0) / 60.0));
+    const double now = options.startSeconds + std::max(frame, 0) / 60.0;
+    if (shower) renderer.setWetness(shower->at(now));
+    if (moving) renderer.setPoses(moving->poses(kTurnDegreesPerSecond * now));
     renderer.render(camera, settings);
     if (frame >= 0) timings.push_back(renderer.timings());
     if (afterFrame) afterFrame(renderer, frame);

@@ -17,6 +17,7 @@
 #include "assets/error.h"
 #include "assets/scene/camera_spec.h"
 #include "assets/scene/light_spec.h"
+#include "assets/scene/moving_mesh.h"
 #include "runtime/viewer/orbit_camera.h"
 #include "runtime/viewer/panel.h"
 #include "runtime/viewer/preview.h"
@@ -99,13 +100,14 @@ class InteractiveView {
         state_(panelFor(options, loaded_)) {
     if (!options.quiet) warnOfLeftOut(loaded_);
     if (options.animation == MaterialAnimation::wetness) shower_.emplace(loaded_.baked.scene);
+    if (!options.moving.empty()) moving_.emplace(loaded_.baked.scene, options.moving);
     choose(0);
   }
 
   void run() {
     int unsettled = 3;  // Dear ImGui needs a few frames until its layout rests
     while (!window_.closing()) {
-      const bool moving = state_.continuous || options_.animation != MaterialAnimation::none;
+      const bool moving = state_.continuous || shower_ || moving_;
       const bool awaiting = pendingEnvironment_.valid() || pendingScene_.valid() || coarse_;
       window_.pollEvents(unsettled > 0 || moving ? 0.0 : awaiting ? 0.05 : 0.5);
       if (collectPending() || window_.takeActivity()) unsettled = 3;
@@ -215,10 +217,10 @@ class InteractiveView {
   /// at rest costs nothing: what was drawn last is shown again, once upsampling has shaded every pixel.
   void render(glm::ivec2 size) {
     const RenderSettings wanted = wantedSettings(size);
-    if (shower_) {
-      renderer_->setWetness(shower_->at(options_.startSeconds + secondsNow() - startedAt_));
-      stale_ = true;
-    }
+    const double now = options_.startSeconds + secondsNow() - startedAt_;
+    if (moving_) renderer_->setPoses(moving_->poses(kTurnDegreesPerSecond * now));
+    if (shower_) renderer_->setWetness(shower_->at(now));
+    if (moving_ || shower_) stale_ = true;
     const bool changed = stale_ || !same(wanted, wanted_) || !same(orbit_.camera(), drawnFrom_);
     const bool whole = state_.continuous || saveWanted_;
     if (changed) changedAt_ = secondsNow();
@@ -294,6 +296,7 @@ class InteractiveView {
     renderer_ = std::move(renderer);
     loaded_ = std::move(loaded);
     if (shower_) shower_.emplace(loaded_.baked.scene);
+    moving_.reset();
     const glm::ivec2 size = glm::max(window_.framebufferSize(), glm::ivec2(1));
     orbit_ = OrbitCamera(defaultCamera(loaded_.baked.scene, static_cast<float>(size.x) / static_cast<float>(size.y)), boundsOf(loaded_.baked.scene));
     state_.materials = loaded_.baked.scene.materials;
@@ -366,6 +369,7 @@ class InteractiveView {
   double changedAt_ = 0.0;
   const double startedAt_ = secondsNow();  // of an animation
   std::optional<Shower> shower_;
+  std::optional<MovingMesh> moving_;  // of the scene that was given, not of one that is opened later
   double millisecondsPerSample_ = std::numeric_limits<double>::infinity();
   bool saveWanted_ = false;
 };

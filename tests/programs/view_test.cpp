@@ -96,7 +96,7 @@ TEST(ViewProgram, HelpNamesEveryOptionAndGivesExamples) {
   EXPECT_EQ(run.err, "");
   for (const char* word : {"--environment", "--rotate-environment-deg", "--size", "--camera", "--orbit", "--exposure", "--tone-map", "--supersample",
                            "--no-background", "--no-shadows", "--debug-view", "--roughness", "--metallic", "--headless", "--window", "--output",
-                           "--json", "--frames", "--threads", "--quiet", "--version", "Examples", "sunny", "Exit codes"})
+                           "--json", "--frames", "--animate", "--moving", "--start", "--threads", "--quiet", "--version", "Examples", "sunny", "Exit codes"})
     EXPECT_THAT(run.out, HasSubstr(word));
 }
 
@@ -125,6 +125,8 @@ TEST(ViewProgram, WrongUsageIsToldBeforeAnyWork) {
       {{"--headless", "-o", "a.png", "--threads", "-1"}, "--threads"},
       {{"--headless", "-o", "a.png", "--threads", "100000"}, "--threads"},
       {{"--headless", "-o", "a.png", "--rotate-environment-deg", "inf"}, "--rotate-environment-deg"},
+      {{"--headless", "-o", "a.png", "--start", "nan"}, "--start"},
+      {{"--headless", "-o", "a.png", "--animate", "rust"}, "--animate"},
       {{"--headless", "-o", "a.jpg"}, "a.jpg"},
       {{"--headless"}, "--output"},
       {{"--headless", "--window", "-o", "a.png"}, "--window"},
@@ -201,6 +203,10 @@ TEST_F(ViewFiles, UnknownCameraListsThoseOfTheFile) {
   expectFailure(view({kScene, "--headless", "-o", "a.png", "--camera", "2"}), 2, "0 (front), 1 (side)");
 }
 
+TEST_F(ViewFiles, UnknownMovingMeshListsThoseOfTheFile) {
+  expectFailure(view({kScene, "--headless", "-o", "a.png", "--moving", "lid"}), 2, "give one of: floor, box");
+}
+
 TEST_F(ViewFiles, WithoutADriverOrADisplayOneLineSaysSo) {
   const Environ noEgl{{"__EGL_VENDOR_LIBRARY_FILENAMES", "/nonexistent.json"}};
   expectFailure(view({kScene, "--headless", "-o", "a.png"}, noEgl), 1, "OpenGL");
@@ -267,6 +273,14 @@ TEST_F(ViewPictures, OptionsChangeWhatTheySay) {
       EXPECT_EQ(glm::vec3(texel), glm::vec3(0.0f));
     }
   }
+}
+
+TEST_F(ViewPictures, AnimationsStartWhereAsked) {
+  EXPECT_LE(worstDifference(png("dry", {"--animate", "wetness"}), plain()), 1) << "a shower begins dry";
+  EXPECT_GT(worstDifference(png("wet", {"--animate", "wetness", "--start", "2"}), plain()), 5);
+  EXPECT_EQ(worstDifference(png("still", {"--moving", "box"}), plain()), 0);
+  EXPECT_GT(worstDifference(png("turned", {"--moving", "box", "--start", "1.5"}), plain()), 5);
+  EXPECT_LE(worstDifference(png("round", {"--moving", "box", "--start", "12"}), plain()), 1) << "a whole turn, 30 degrees a second";
 }
 
 TEST_F(ViewPictures, DoesNotDependOnThreads) {

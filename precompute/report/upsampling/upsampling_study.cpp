@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <glm/gtc/matrix_transform.hpp>
 #include <numbers>
+#include <optional>
 
 #include "assets/builtin/environment.h"
 #include "assets/error.h"
 #include "assets/scene/material_override.h"
+#include "assets/scene/moving_mesh.h"
 #include "precompute/report/metrics.h"
 #include "precompute/report/metrics/flip.h"
 #include "precompute/report/metrics/rmse.h"
@@ -34,22 +35,10 @@ std::vector<Material> materialsOf(Scene scene, const StudyMaterial& material) {
 /// Camera and poses of a frame; negative ones come before those that count.
 class Path {
  public:
-  Path(const Scene& scene, const UpsamplingSettings& settings) : settings_(settings), bounds_(boundsOf(scene)), poses_(scene.meshNames.size(), glm::mat4(1.0f)) {
+  Path(const Scene& scene, const UpsamplingSettings& settings) : settings_(settings), bounds_(boundsOf(scene)), rest_(scene.meshNames.size(), glm::mat4(1.0f)) {
     const float aspect = static_cast<float>(settings.size.x) / static_cast<float>(settings.size.y);
     start_ = resolveCamera(settings.camera, scene, aspect);
-    if (settings.moving.empty()) return;
-    const auto found = std::find(scene.meshNames.begin(), scene.meshNames.end(), settings.moving);
-    if (found == scene.meshNames.end()) {
-      std::string names;
-      for (const auto& name : scene.meshNames) names += (names.empty() ? "" : ", ") + name;
-      throw usageError("--moving", "the scene has no mesh \"" + settings.moving + "\"", "give one of: " + names);
-    }
-    mesh_ = static_cast<std::size_t>(found - scene.meshNames.begin());
-    moves_ = true;
-    Scene part;
-    for (const auto& primitive : scene.primitives)
-      if (static_cast<std::size_t>(primitive.mesh) == mesh_) part.primitives.push_back(primitive);
-    middle_ = boundsOf(part).center();
+    if (!settings.moving.empty()) mesh_.emplace(scene, settings.moving);
   }
 
   Camera camera(int frame) const {
@@ -58,21 +47,17 @@ class Path {
     return turned;
   }
 
-  std::vector<glm::mat4> poses(int frame) {
-    if (!moves_) return poses_;
-    const glm::mat4 away = glm::translate(glm::mat4(1.0f), -middle_), back = glm::translate(glm::mat4(1.0f), middle_);
-    poses_[mesh_] = back * glm::rotate(glm::mat4(1.0f), radians(static_cast<double>(settings_.movingDegrees) * (frame + 1000)), glm::vec3(0, 1, 0)) * away;
-    return poses_;
+  std::vector<glm::mat4> poses(int frame) const {
+    // Far from where it was baked: a turn of 0 is no movement.
+    return mesh_ ? mesh_->poses(static_cast<double>(settings_.movingDegrees) * (frame + 1000)) : rest_;
   }
 
  private:
   const UpsamplingSettings& settings_;
   Bounds bounds_;
   Camera start_;
-  std::vector<glm::mat4> poses_;
-  bool moves_ = false;
-  std::size_t mesh_ = 0;
-  glm::vec3 middle_{0.0f};
+  std::vector<glm::mat4> rest_;
+  std::optional<MovingMesh> mesh_;
 };
 
 struct Frames {
