@@ -132,7 +132,7 @@ void main() {
   float shown = diffuseShown + reflectedShown;
   float weight = shown > 0.0 ? dot(trust, vec2(diffuseShown, reflectedShown)) / shown : min(trust.x, trust.y);
   float contrast = divisor.x > 0.0 ? max(seen(high) - seen(low), 0.02) : 1.0;
-  float urgency = (1.0 - weight) * contrast;
+  float urgency = (1.04 - weight) * contrast;
   quality = vec4(weight, urgency, 0.0, 0.0);
   if (recompute) {
     int step = urgencyStep(urgency);
