@@ -239,7 +239,8 @@ struct Renderer::Impl {
         if (bodies.size() == kMostBodies)
           throw Error(ExitCode::failed, "setPoses", "more than " + std::to_string(kMostBodies - 1) + " meshes move", "join meshes that move alike");
         bodyOfMesh[mesh] = bodies.size();
-        bodies.emplace_back().clipFromRest = bodies.front().clipFromRest;
+        const glm::mat4 clipFromRest = bodies.front().clipFromRest;
+        bodies.emplace_back().clipFromRest = clipFromRest;
         assignDraws();
       }
       if (bodyOfMesh[mesh] != 0) bodies[bodyOfMesh[mesh]].worldFromRest = poses[mesh];
