@@ -11,6 +11,7 @@
 #include "assets/scene/glb.h"
 #include "assets/scene/gltf_accessor.h"
 #include "assets/scene/gltf_material.h"
+#include "assets/scene/gltf_motion.h"
 #include "assets/scene/primitive_normals.h"
 #include "assets/scene/warnings.h"
 
@@ -64,19 +65,6 @@ tinygltf::Model parse(std::span<const std::uint8_t> bytes, const std::filesystem
   if (model.asset.version.rfind("2.", 0) != 0)
     throw inputError(where, "has glTF version " + model.asset.version + ", not 2.0", "convert it to glTF 2.0");
   return model;
-}
-
-glm::dmat4 localTransform(const tinygltf::Node& node) {
-  if (node.matrix.size() == 16) return glm::make_mat4(node.matrix.data());
-  glm::dmat4 m(1.0);
-  if (node.scale.size() == 3)
-    for (int i = 0; i < 3; ++i) m[i][i] = node.scale[static_cast<std::size_t>(i)];
-  if (node.rotation.size() == 4) {
-    const auto& r = node.rotation;
-    m = glm::mat4_cast(glm::normalize(glm::dquat(r[3], r[0], r[1], r[2]))) * m;
-  }
-  if (node.translation.size() == 3) m[3] = {node.translation[0], node.translation[1], node.translation[2], 1.0};
-  return m;
 }
 
 bool isFinite(const glm::dmat4& m) {
@@ -138,7 +126,7 @@ class SceneReader {
     reached_.assign(model_.nodes.size(), false);
     for (const int root : roots()) visit(root, glm::dmat4(1.0), 0);
     limitInfiniteCameras();
-    if (!model_.animations.empty()) warnings_.say("animations are ignored: the scene is taken at rest");
+    scene_.motions = readGltfMotions(model_, accessors_, meshes_, where_, warnings_);
   }
 
   Scene take() { return std::move(scene_); }
@@ -179,6 +167,7 @@ class SceneReader {
     if (reached_[static_cast<std::size_t>(index)] || depth > kDeepestNode)
       throw inputError(where_, label + " is reached twice: nodes must form a tree", "export it again");
     reached_[static_cast<std::size_t>(index)] = true;
+    ancestors_.push_back(index);
     const glm::dmat4 world = parent * localTransform(node);
     if (!isFinite(world)) throw inputError(where_, label + " has a transform that is not finite", "export it again");
     if (node.mesh != -1) addMesh(node, label, world);
@@ -188,6 +177,7 @@ class SceneReader {
     if (node.skin != -1) warnings_.say(label + " is skinned: its mesh is taken in its bind pose");
     if (node.extensions.count("EXT_mesh_gpu_instancing") != 0) warnings_.say(label + " is instanced: one instance is taken");
     for (const int child : node.children) visit(child, world, depth + 1);
+    ancestors_.pop_back();
   }
 
   void addMesh(const tinygltf::Node& node, const std::string& label, const glm::dmat4& world) {
@@ -211,7 +201,9 @@ class SceneReader {
       scene_.primitives.push_back(std::move(primitive));
       any = true;
     }
-    if (any) scene_.meshNames.push_back(node.name.empty() ? mesh.name : node.name);
+    if (!any) return;
+    scene_.meshNames.push_back(node.name.empty() ? mesh.name : node.name);
+    meshes_.push_back({instance, label, ancestors_});
   }
 
   static std::string primitiveName(const tinygltf::Mesh& mesh, std::size_t index) {
@@ -470,6 +462,8 @@ class SceneReader {
   std::vector<bool> reached_;
   bool quantized_ = false;
   Scene scene_;
+  std::vector<int> ancestors_;    // of the node visited, and it
+  std::vector<MeshNodes> meshes_;
 };
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <glm/gtc/quaternion.hpp>
 #include <limits>
 #include <optional>
 #include <string>
@@ -152,6 +153,14 @@ struct Light {
   glm::vec3 direction{0.0f, 0.0f, -1.0f};  ///< the way the light travels, unit
 };
 
+/// How a mesh moves as a rigid body: keys that take it from where the scene has it, a rotation about the origin and then a shift.
+struct RigidMotion {
+  int mesh = 0;                      ///< of Scene::meshNames
+  std::vector<float> times;          ///< seconds, rising, at least one
+  std::vector<glm::quat> rotations;  ///< unit, each within half a turn of the one before
+  std::vector<glm::vec3> shifts;     ///< metres
+};
+
 struct Scene {
   std::vector<std::string> meshNames;
   std::vector<Primitive> primitives;
@@ -160,6 +169,7 @@ struct Scene {
   std::vector<EncodedImage> images;
   std::vector<Camera> cameras;
   std::vector<Light> lights;
+  std::vector<RigidMotion> motions;  ///< at most one a mesh; played by posesAt()
 
   std::size_t vertexCount() const;
   std::size_t triangleCount() const;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <map>
 #include <set>
 
 #include "assets/scene/glb.h"
@@ -119,7 +120,7 @@ class SceneWriter {
         if (!name.empty()) mesh["name"] = node["name"] = name;
         mesh["primitives"] = Json::array();
         node["mesh"] = push(json_, "meshes", std::move(mesh));
-        addNode(std::move(node));
+        nodeOf_[current] = addNode(std::move(node));
       }
       auto& mesh = json_["meshes"].back();
       const std::string label = "mesh " + (name.empty() ? std::to_string(json_["meshes"].size() - 1) : name) + ", primitive " +
@@ -292,6 +293,35 @@ class SceneWriter {
     return out;
   }
 
+  int writeKeys(const auto& values, const std::string& name, const char* type) {
+    return writer_.addAccessor(writer_.addArray(values, name), kFloat, type, values.size());
+  }
+
+ public:
+  /// One animation; meshes stand in the world, so that a node's transform is its motion.
+  void writeMotions() {
+    if (scene_.motions.empty()) return;
+    Json animation = Json::object();
+    for (const auto& motion : scene_.motions) {
+      const auto shown = nodeOf_.find(motion.mesh);
+      if (shown == nodeOf_.end()) continue;  // nothing is left of it
+      const std::string label = " of motion " + std::to_string(motion.mesh);
+      std::vector<glm::vec4> rotations;
+      for (const auto& q : motion.rotations) rotations.emplace_back(q.x, q.y, q.z, q.w);
+      const int times = writeKeys(motion.times, "times" + label, "SCALAR");
+      json_["accessors"].back()["min"] = Json::array({motion.times.front()});
+      json_["accessors"].back()["max"] = Json::array({motion.times.back()});
+      const auto channel = [&](const char* path, int output) {
+        const int sampler = push(animation, "samplers", {{"input", times}, {"output", output}});
+        push(animation, "channels", {{"sampler", sampler}, {"target", {{"node", shown->second}, {"path", path}}}});
+      };
+      channel("rotation", writeKeys(rotations, "rotations" + label, "VEC4"));
+      channel("translation", writeKeys(motion.shifts, "shifts" + label, "VEC3"));
+    }
+    if (!animation.empty()) push(json_, "animations", std::move(animation));
+  }
+
+ private:
   int writeIndices(const Primitive& primitive, const std::string& label) {
     using Target = GltfWriter::Target;
     // 65535 is no index in 16 bits: it restarts strips (glTF 2.0, 3.7.2.1).
@@ -316,15 +346,17 @@ class SceneWriter {
     if (matrix != glm::mat4(1.0f)) node["matrix"] = list(matrix);
   }
 
-  void addNode(Json node) {
+  int addNode(Json node) {
     const int index = push(json_, "nodes", std::move(node));
     json_["scenes"][0]["nodes"].push_back(index);
+    return index;
   }
 
   const Scene& scene_;
   GltfWriter& writer_;
   Json& json_;
   std::set<std::string> used_;
+  std::map<int, int> nodeOf_;  // of meshes
 };
 
 }  // namespace
@@ -379,6 +411,7 @@ std::vector<Json::json_pointer> writeScene(const Scene& scene, const std::vector
   auto places = sceneWriter.writeMeshes(order);
   sceneWriter.writeCameras();
   sceneWriter.writeLights();
+  sceneWriter.writeMotions();
   sceneWriter.writeImages();
   sceneWriter.writeTextures();
   sceneWriter.writeMaterials();

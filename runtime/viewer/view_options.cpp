@@ -115,7 +115,7 @@ void declareViewOptions(CLI::App& app, ViewOptions& options, ViewOptionTexts& te
   app.add_option("--roughness", texts.roughness, "Perceptual roughness of every material, 0 to 1")->type_name("R")->group(view);
   app.add_option("--metallic", texts.metallic, "Metalness of every material, 0 to 1")->type_name("M")->group(view);
 
-  app.add_option("--animate", texts.animate, "none, or wetness: a shower wets everything puddle by puddle and it dries again, in 4 seconds or 240 frames of a run that ends")
+  app.add_option("--animate", texts.animate, "none; wetness: a shower wets everything puddle by puddle and it dries again, in 4 seconds or 240 frames of a run that ends; scene: the file's own animation, over and over")
       ->type_name("NAME")->capture_default_str()->group(view);
   app.add_option("--moving", options.moving, "A mesh of the scene that turns about +Y through its middle, 30 degrees a second, of which a run that ends has 60 frames")->type_name("MESH")->group(view);
   app.add_option("--start", options.startSeconds, "Where the animations start, in seconds")->type_name("S")->capture_default_str()->group(view);
@@ -160,7 +160,7 @@ void finishViewOptions(ViewOptions& options, const ViewOptionTexts& texts) {
   options.materials = {texts.roughness, texts.metallic, modelFromOption(texts.model)};
   requireLobes(options.lobes, "--lobes");
   requireFinestResolution(options.prefilter, "--prefilter");
-  options.animation = materialAnimationFromName(texts.animate);
+  options.animation = animationFromName(texts.animate);
   if (!(std::abs(options.startSeconds) <= 1e6)) throw usageError("--start", "must lie between -1e6 and 1e6", "give seconds such as 1.5");
   for (const auto& text : texts.lights) options.lights.push_back(parseLightSpec(text));
   for (const auto& [value, option] : {std::pair{texts.roughness, "--roughness"}, std::pair{texts.metallic, "--metallic"}})

@@ -11,7 +11,7 @@
 #include "assets/scene/camera_spec.h"
 #include "assets/scene/material_override.h"
 #include "runtime/render/renderer.h"
-#include "runtime/viewer/material_animation.h"
+#include "runtime/viewer/animation.h"
 
 namespace CLI {
 class App;
@@ -24,8 +24,6 @@ enum class ViewMode {
   window,       ///< a window that draws a number of frames, saves them and closes
   headless      ///< the same without a window
 };
-
-inline constexpr double kTurnDegreesPerSecond = 30.0;  // of ViewOptions::moving
 
 struct ViewOptions {
   std::filesystem::path scene;            ///< a baked .glb
@@ -49,7 +47,7 @@ struct ViewOptions {
   int upsample = 1;
   UpsampleWeights upsampleWeights = UpsampleWeights::lobe;
   RecomputeBudget recompute;
-  MaterialAnimation animation = MaterialAnimation::none;
+  Animation animation = Animation::none;
   std::string moving;                     ///< a mesh that turns; empty: none
   double startSeconds = 0.0;              ///< of the animation
   int frames = 1;

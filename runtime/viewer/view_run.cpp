@@ -5,10 +5,8 @@
 #include <algorithm>
 #include <cstdio>
 #include <nlohmann/json.hpp>
-#include <optional>
 
 #include "assets/file.h"
-#include "assets/scene/moving_mesh.h"
 #include "runtime/gl/context.h"
 #include "runtime/viewer/frame_statistics.h"
 
@@ -117,15 +115,10 @@ void runFrames(const ViewOptions& options, const LoadedScene& scene, const Camer
   // The first frame of a driver compiles and moves things; where frames are compared it does not count.
   const int warmUp = options.frames > 1 ? 1 : 0;
   std::vector<FrameTimings> timings;
-  std::optional<Shower> shower;
-  if (options.animation == MaterialAnimation::wetness) shower.emplace(scene.baked.scene);
-  std::optional<MovingMesh> moving;
-  if (!options.moving.empty()) moving.emplace(scene.baked.scene, options.moving);
+  Animator animator(scene.baked.scene, options.animation, options.moving);
   for (int frame = -warmUp; frame < options.frames; ++frame) {
     if (frame == 0) start = secondsNow();
-    const double now = options.startSeconds + std::max(frame, 0) / 60.0;
-    if (shower) renderer.setWetness(shower->at(now));
-    if (moving) renderer.setPoses(moving->poses(kTurnDegreesPerSecond * now));
+    animator.apply(renderer, options.startSeconds + std::max(frame, 0) / 60.0);
     renderer.render(camera, settings);
     if (frame >= 0) timings.push_back(renderer.timings());
     if (afterFrame) afterFrame(renderer, frame);

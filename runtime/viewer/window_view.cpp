@@ -17,7 +17,6 @@
 #include "assets/error.h"
 #include "assets/scene/camera_spec.h"
 #include "assets/scene/light_spec.h"
-#include "assets/scene/moving_mesh.h"
 #include "runtime/viewer/orbit_camera.h"
 #include "runtime/viewer/panel.h"
 #include "runtime/viewer/preview.h"
@@ -97,17 +96,16 @@ class InteractiveView {
         orbit_(viewCamera(options, loaded_.baked.scene), boundsOf(loaded_.baked.scene)),
         window_(options.size, titleOf(options.scene)),
         renderer_(std::make_unique<Renderer>(loaded_.baked)),
-        state_(panelFor(options, loaded_)) {
+        state_(panelFor(options, loaded_)),
+        animator_(loaded_.baked.scene, options.animation, options.moving) {
     if (!options.quiet) warnOfLeftOut(loaded_);
-    if (options.animation == MaterialAnimation::wetness) shower_.emplace(loaded_.baked.scene);
-    if (!options.moving.empty()) moving_.emplace(loaded_.baked.scene, options.moving);
     choose(0);
   }
 
   void run() {
     int unsettled = 3;  // Dear ImGui needs a few frames until its layout rests
     while (!window_.closing()) {
-      const bool moving = state_.continuous || shower_ || moving_;
+      const bool moving = state_.continuous || animator_.moves();
       const bool awaiting = pendingEnvironment_.valid() || pendingScene_.valid() || coarse_;
       window_.pollEvents(unsettled > 0 || moving ? 0.0 : awaiting ? 0.05 : 0.5);
       if (collectPending() || window_.takeActivity()) unsettled = 3;
@@ -217,10 +215,10 @@ class InteractiveView {
   /// at rest costs nothing: what was drawn last is shown again, once upsampling has shaded every pixel.
   void render(glm::ivec2 size) {
     const RenderSettings wanted = wantedSettings(size);
-    const double now = options_.startSeconds + secondsNow() - startedAt_;
-    if (moving_) renderer_->setPoses(moving_->poses(kTurnDegreesPerSecond * now));
-    if (shower_) renderer_->setWetness(shower_->at(now));
-    if (moving_ || shower_) stale_ = true;
+    if (animator_.moves()) {
+      animator_.apply(*renderer_, options_.startSeconds + secondsNow() - startedAt_);
+      stale_ = true;
+    }
     const bool changed = stale_ || !same(wanted, wanted_) || !same(orbit_.camera(), drawnFrom_);
     const bool whole = state_.continuous || saveWanted_;
     if (changed) changedAt_ = secondsNow();
@@ -295,8 +293,9 @@ class InteractiveView {
     if (environment_ != nullptr) renderer->setEnvironment(environment_->light);
     renderer_ = std::move(renderer);
     loaded_ = std::move(loaded);
-    if (shower_) shower_.emplace(loaded_.baked.scene);
-    moving_.reset();
+    // What was asked for is of the scene that was given.
+    const bool own = options_.animation == Animation::scene && loaded_.baked.scene.motions.empty();
+    animator_ = Animator(loaded_.baked.scene, own ? Animation::none : options_.animation, "");
     const glm::ivec2 size = glm::max(window_.framebufferSize(), glm::ivec2(1));
     orbit_ = OrbitCamera(defaultCamera(loaded_.baked.scene, static_cast<float>(size.x) / static_cast<float>(size.y)), boundsOf(loaded_.baked.scene));
     state_.materials = loaded_.baked.scene.materials;
@@ -368,8 +367,7 @@ class InteractiveView {
   int settledFrames_ = 0;  // drawn since anything changed
   double changedAt_ = 0.0;
   const double startedAt_ = secondsNow();  // of an animation
-  std::optional<Shower> shower_;
-  std::optional<MovingMesh> moving_;  // of the scene that was given, not of one that is opened later
+  Animator animator_;
   double millisecondsPerSample_ = std::numeric_limits<double>::infinity();
   bool saveWanted_ = false;
 };

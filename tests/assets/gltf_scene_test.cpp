@@ -1,10 +1,12 @@
 // glTF 2.0 as exporters and as vandals write it.
 #include <cmath>
 #include <cstring>
+#include <functional>
 #include <nlohmann/json.hpp>
 
 #include "assets/scene/light_spec.h"
 #include "assets/scene/load_scene.h"
+#include "assets/scene/motion.h"
 #include "assets/transfer/gltf_writer.h"
 #include "tests/assets/asset_test_support.h"
 
@@ -368,6 +370,95 @@ TEST(GltfScene, MaterialsAndTextures) {
                                            HasSubstr("put the image where")));
   test::put(file.folder / "col our.png", std::string("not an image"));
   EXPECT_THAT(file.error(), HasSubstr("image 0 (colour) is neither PNG nor JPEG"));
+}
+
+/// A triangle under a parent node; channels are of one animation.
+struct Animated : File {
+  int parent, child;
+
+  Animated() {
+    triangle();
+    child = 0;
+    root["nodes"][0]["translation"] = {0, 0, 2};
+    root["nodes"].push_back({{"children", {0}}, {"translation", {1, 0, 0}}});
+    parent = 1;
+    root["scenes"][0]["nodes"] = {1};
+  }
+  void channel(int node, const char* path, const std::vector<float>& times, const std::vector<float>& values, const char* interpolation = "LINEAR") {
+    json& animation = root["animations"][0];
+    const int input = floats(times, "SCALAR"), output = floats(values, std::strcmp(path, "rotation") == 0 ? "VEC4" : "VEC3");
+    animation["samplers"].push_back({{"input", input}, {"output", output}, {"interpolation", interpolation}});
+    animation["channels"].push_back({{"sampler", animation["samplers"].size() - 1}, {"target", {{"node", node}, {"path", path}}}});
+  }
+};
+
+glm::vec3 movedTo(const Scene& scene, double seconds, glm::vec3 point) { return glm::vec3(posesAt(scene, seconds).at(0) * glm::vec4(point, 1)); }
+
+// Against the chain of nodes by hand: the child's origin rests at (1, 0, 2) in the world.
+TEST(GltfMotion, ChainsOfNodesMoveRigidly) {
+  Animated file;
+  const float h = std::sqrt(0.5f);
+  file.channel(file.parent, "rotation", {1, 3}, {0, 0, 0, 1, 0, h, 0, h});        // a quarter turn about +Y, which takes +Z to +X
+  file.channel(file.child, "translation", {0, 2}, {0, 0, 2, 0, 4, 2});
+  const Scene scene = file.load();
+  EXPECT_THAT(file.warnings, ElementsAre());
+  ASSERT_EQ(scene.motions.size(), 1u);
+  EXPECT_EQ(motionSeconds(scene), 3.0);
+  expectNear(movedTo(scene, -1, {1, 0, 2}), {1, 0, 2});
+  expectNear(movedTo(scene, 1, {1, 0, 2}), {1, 2, 2}, 1e-5f);
+  expectNear(movedTo(scene, 2, {1, 0, 2}), {1 + 2 * h, 4, 2 * h}, 1e-5f);
+  expectNear(movedTo(scene, 3, {1, 0, 2}), {3, 4, 0}, 1e-5f);
+  expectNear(movedTo(scene, 99, {1, 0, 2}), {3, 4, 0}, 1e-5f);
+  // Between keys, where the chain is no line: half a sample of a thirtieth of a second off at most.
+  const float angle = 0.37f * glm::radians(45.0f);
+  expectNear(movedTo(scene, 1.37, {1, 0, 2}), {1 + 2 * std::sin(angle), 2.74f, 2 * std::cos(angle)}, 2e-4f);
+}
+
+TEST(GltfMotion, StepsAndCurves) {
+  Animated file;
+  file.channel(file.parent, "translation", {0, 1}, {1, 0, 0, 5, 0, 0}, "STEP");
+  // In tangent, value, out tangent: from 0 at speed 6 to 2 at speed 0.
+  file.channel(file.child, "translation", {0, 2}, {0, 0, 0, 0, 0, 2, 0, 6, 0, 0, 0, 0, 0, 2, 2, 0, 0, 0}, "CUBICSPLINE");
+  const Scene scene = file.load();
+  const auto curve = [](float t) { return 2 * (t * t * t - 2 * t * t + t) * 6 + 2 * (3 * t * t - 2 * t * t * t); };
+  expectNear(movedTo(scene, 0.5, {0, 0, 0}), {0, curve(0.25f), 0}, 2e-3f);
+  expectNear(movedTo(scene, 1.0, {0, 0, 0}), {4, curve(0.5f), 0}, 1e-4f);
+  expectNear(movedTo(scene, 0.9, {0, 0, 0}), {0, curve(0.45f), 0}, 2e-3f);
+}
+
+TEST(GltfMotion, WhatIsNoRigidMotionRests) {
+  Animated scaled;
+  scaled.channel(scaled.child, "scale", {0, 1}, {1, 1, 1, 2, 1, 1});
+  EXPECT_TRUE(scaled.load().motions.empty());
+  EXPECT_THAT(scaled.warnings, ElementsAre(HasSubstr("more than rotation and shift")));
+  Animated still;
+  still.channel(still.child, "translation", {0, 1}, {0, 0, 2, 0, 0, 2});
+  EXPECT_TRUE(still.load().motions.empty());
+  EXPECT_THAT(still.warnings, ElementsAre());
+  Animated morphed;
+  morphed.channel(morphed.child, "translation", {0, 1}, {0, 0, 2, 0, 0, 3});
+  morphed.root["animations"][0]["channels"][0]["target"]["path"] = "weights";
+  EXPECT_TRUE(morphed.load().motions.empty());
+  EXPECT_THAT(morphed.warnings, ElementsAre(HasSubstr("morph")));
+  Animated two;
+  two.channel(two.child, "translation", {0, 1}, {0, 0, 2, 0, 0, 3});
+  two.root["animations"].push_back(two.root["animations"][0]);
+  EXPECT_EQ(two.load().motions.size(), 1u);
+  EXPECT_THAT(two.warnings, ElementsAre(HasSubstr("the first is kept")));
+}
+
+TEST(GltfMotion, Damaged) {
+  const auto errorWith = [](const std::function<void(Animated&)>& damage) {
+    Animated file;
+    file.channel(file.child, "translation", {0, 1}, {0, 0, 2, 0, 0, 3});
+    damage(file);
+    return file.error();
+  };
+  EXPECT_THAT(errorWith([](Animated& f) { f.root["animations"][0]["channels"][0]["target"]["node"] = 7; }), HasSubstr("node that does not exist"));
+  EXPECT_THAT(errorWith([](Animated& f) { f.root["animations"][0]["channels"][0]["sampler"] = 7; }), HasSubstr("sampler that does not exist"));
+  EXPECT_THAT(errorWith([](Animated& f) { f.root["animations"][0]["samplers"][0]["input"] = f.floats({1, 1}, "SCALAR"); }), HasSubstr("do not rise"));
+  EXPECT_THAT(errorWith([](Animated& f) { f.root["animations"][0]["samplers"][0]["input"] = f.floats({0, 1, 2}, "SCALAR"); }), HasSubstr("6 values for 3 times"));
+  EXPECT_THAT(errorWith([](Animated& f) { f.root["animations"][0]["samplers"][0]["output"] = f.floats({0, 0, 2, 0, 0, NAN}, "VEC3"); }), HasSubstr("channel 0"));
 }
 
 // KHR_materials_ior, _specular, _clearcoat and our own extension: their members, defaults, and what is out of range.

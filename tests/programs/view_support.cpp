@@ -98,6 +98,8 @@ Scene smallScene() {
   scene.materials[1].name = "copper";
   scene.materials[1].baseColorFactor = {0.9f, 0.5f, 0.35f, 1.0f};
   scene.materials[1].roughnessFactor = 0.4f;
+  // The box turns by a quarter and rises.
+  scene.motions = {{1, {0.0f, 1.0f}, {glm::quat(1, 0, 0, 0), glm::angleAxis(glm::radians(90.0f), glm::vec3(0, 1, 0))}, {glm::vec3(0.0f), glm::vec3(0.0f, 0.6f, 0.0f)}}};
   const Bounds bounds = boundsOf(scene);
   scene.cameras = {lookAt({2.5f, 2.0f, 4.0f}, {0, 0.4f, 0}, 0.7f, bounds), lookAt({-3, 3, 1}, {0, 0.4f, 0}, 0.7f, bounds)};
   scene.cameras[0].name = "front";

@@ -280,6 +280,9 @@ TEST_F(ViewPictures, AnimationsStartWhereAsked) {
   EXPECT_GT(worstDifference(png("wet", {"--animate", "wetness", "--start", "2"}), plain()), 5);
   EXPECT_EQ(worstDifference(png("still", {"--moving", "box"}), plain()), 0);
   EXPECT_GT(worstDifference(png("turned", {"--moving", "box", "--start", "1.5"}), plain()), 5);
+  EXPECT_EQ(worstDifference(png("first_key", {"--animate", "scene"}), plain()), 0);
+  EXPECT_GT(worstDifference(png("half_way", {"--animate", "scene", "--start", "0.5"}), plain()), 20);
+  EXPECT_LE(worstDifference(png("again", {"--animate", "scene", "--start", "1.5"}), readPng("half_way.png")), 1) << "over and over, a second long";
   EXPECT_LE(worstDifference(png("round", {"--moving", "box", "--start", "12"}), plain()), 1) << "a whole turn, 30 degrees a second";
 }
 

@@ -1,4 +1,4 @@
-#include "runtime/viewer/material_animation.h"
+#include "runtime/viewer/animation.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,11 +7,13 @@
 #include <random>
 
 #include "assets/error.h"
+#include "assets/scene/motion.h"
 
 namespace chiaro {
 namespace {
 
 constexpr double kPeriod = 4.0;
+constexpr double kTurnDegreesPerSecond = 30.0;
 constexpr int kSize = 256, kCoarsestCells = 8, kOctaves = 4;
 constexpr float kShore = 0.2f;         // between dry and soaked, as a share of all heights
 constexpr float kMapsAcross = 1.5f;    // the scene's diagonal, so that the repetition hardly shows
@@ -44,10 +46,11 @@ std::vector<float> ranked(const std::vector<float>& values) {
 
 }  // namespace
 
-MaterialAnimation materialAnimationFromName(const std::string& name) {
-  if (name == "none") return MaterialAnimation::none;
-  if (name == "wetness") return MaterialAnimation::wetness;
-  throw usageError("--animate", "unknown animation \"" + name + "\"", "give none or wetness");
+Animation animationFromName(const std::string& name) {
+  if (name == "none") return Animation::none;
+  if (name == "wetness") return Animation::wetness;
+  if (name == "scene") return Animation::scene;
+  throw usageError("--animate", "unknown animation \"" + name + "\"", "give none, wetness or scene");
 }
 
 Shower::Shower(const Scene& scene) {
@@ -64,6 +67,31 @@ const Wetness& Shower::at(double seconds) {
   for (std::size_t k = 0; k < height_.size(); ++k)
     wetness_.texels[k] = static_cast<std::uint8_t>(std::lround(255.0f * std::clamp((level - height_[k]) / kShore, 0.0f, 1.0f)));
   return wetness_;
+}
+
+Animator::Animator(const Scene& scene, Animation animation, const std::string& moving) {
+  if (animation == Animation::wetness) shower_.emplace(scene);
+  if (!moving.empty()) moving_.emplace(scene, moving);
+  if (animation != Animation::scene) return;
+  if (scene.motions.empty()) throw usageError("--animate", "the scene has no animation of rigid meshes", "give another animation, or bake an animated file");
+  played_.meshNames = scene.meshNames;
+  played_.motions = scene.motions;
+}
+
+void Animator::apply(Renderer& renderer, double seconds) {
+  if (shower_) renderer.setWetness(shower_->at(seconds));
+  if (!moving_ && played_.motions.empty()) return;
+  std::vector<glm::mat4> poses;
+  if (!played_.motions.empty()) {
+    const double length = motionSeconds(played_);
+    poses = posesAt(played_, length > 0.0 ? seconds - length * std::floor(seconds / length) : 0.0);
+  }
+  if (moving_) {
+    auto turned = moving_->poses(kTurnDegreesPerSecond * seconds);
+    for (std::size_t mesh = 0; mesh < poses.size(); ++mesh) turned[mesh] = poses[mesh] * turned[mesh];
+    poses = std::move(turned);
+  }
+  renderer.setPoses(poses);
 }
 
 }  // namespace chiaro
