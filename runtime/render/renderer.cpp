@@ -17,6 +17,7 @@
 #include "runtime/render/gpu_environment.h"
 #include "runtime/render/gpu_scene.h"
 #include "runtime/render/light_visibility.h"
+#include "runtime/render/pixel_budget.h"
 #include "runtime/render/reflectance_textures.h"
 #include "runtime/render/upsample_spec.h"
 #include "runtime/render/upsampler.h"
@@ -25,8 +26,6 @@ namespace chiaro {
 namespace {
 
 constexpr std::size_t kMostBodies = 255;  // 0 for what rests; shaders/stage/upsample_guide.glsl keeps eight bits
-
-constexpr const char* kCoarsePass = "coarse shade";
 
 /// Numbers of shaders/stage/tape.glsl.
 enum class TapeMode { counts = 0, records = 1, answers = 2 };
@@ -93,7 +92,7 @@ struct Renderer::Impl {
   std::vector<Body> bodies = std::vector<Body>(1);
   std::vector<std::size_t> bodyOfMesh;
   std::unique_ptr<Upsampler> upsampler;  // made when first asked for
-  double secondsPerPixel = 0.0;          // of shading with upsampling, as last measured
+  std::optional<PixelBudget> timedBudget;  // likewise
 
   explicit Impl(const BakedScene& baked) : scene(baked), lightVisibility(scene.transfer()), bodyOfMesh(scene.meshCount(), 0) {
     assignDraws();
@@ -376,23 +375,25 @@ struct Renderer::Impl {
     const double pixels = static_cast<double>(shaded->color.width()) * shaded->color.height();
     const double milliseconds = static_cast<double>(settings.recompute.milliseconds);
     if (!(milliseconds > 0.0)) return static_cast<unsigned>(pixels * static_cast<double>(std::clamp(settings.recompute.share, 0.0f, 1.0f)));
-    if (!(secondsPerPixel > 0.0)) return 0;
-    return static_cast<unsigned>(std::min(pixels, 1e-3 * milliseconds / secondsPerPixel));
+    if (!timedBudget) timedBudget.emplace();
+    return timedBudget->pixelsFor(milliseconds, pixels);
   }
 
-  void measureShading() {
-    for (const auto& [name, timer] : timers)
-      if (name == kCoarsePass && timer.ready()) secondsPerPixel = timer.seconds() / upsampler->coarsePixels();
+  void recompute(const RenderSettings& settings, int bodyCount, const std::function<void(int)>& bind) {
+    const unsigned pixels = recomputeBudget(settings);
+    const bool byTime = settings.recompute.milliseconds > 0.0f;
+    if (byTime) timedBudget->begin();
+    upsampler->recompute(bodyCount, bind, pixels);
+    if (byTime) timedBudget->end(upsampler->listed(), Upsampler::kListedOffset);
   }
 
   std::size_t renderUpsampled(const Camera& camera, const RenderSettings& settings) {
-    measureShading();
-    upsampler->begin(shaded->color, shaded->depth, camera, settings);
+    upsampler->begin(shaded->color, shaded->depth, camera, settings, environment->meanRadiance());
     const auto bind = [this](int body) { bindBody(static_cast<std::size_t>(body)); };
     const int count = static_cast<int>(bodies.size());
     timed(0, "surfaces", [&] {
       upsampler->bindSurfaces();
-      glDepthFunc(GL_LESS);
+      glDepthFunc(GL_LEQUAL);  // of two at one depth the later, as where depth is drawn first
       upsampler->surfaceProgram().use();
       for (int b = 0; b < count; ++b) {
         const Body& body = bodies[static_cast<std::size_t>(b)];
@@ -404,9 +405,9 @@ struct Renderer::Impl {
     });
     glDepthMask(GL_FALSE);
     dataPass();
-    timed(1, kCoarsePass, [&] { upsampler->shade(count, bind); });
+    timed(1, "coarse shade", [&] { upsampler->shade(count, bind); });
     timed(2, "upsample", [&] { upsampler->filter(); });
-    timed(3, "recompute", [&] { upsampler->recompute(count, bind, recomputeBudget(settings)); });
+    timed(3, "recompute", [&] { recompute(settings, count, bind); });
     timed(4, "compose", [&] { upsampler->compose(); });
     bindBody(0);
     shaded->framebuffer.bind();
@@ -449,7 +450,9 @@ struct Renderer::Impl {
       glDepthFunc(GL_LEQUAL);
       fullscreen(backgroundProgram);
     });
-    timed(pass++, "blended", [&] { drawBlended(camera); });
+    timed(pass++, "blended", [&] {
+      if (settings.debugView < DebugView::totalWeight) drawBlended(camera);
+    });
     dataPass();
     timed(pass++, "resolve", [&] {
       resolved->framebuffer.bind();

@@ -7,7 +7,8 @@
 namespace chiaro {
 namespace {
 
-constexpr float kDarkest = 0.02f;  // light that hardly shows, exposed
+constexpr float kDarkest = 0.02f;      // light that hardly shows, exposed
+constexpr float kDarkestShare = 0.04f;  // the same, of an environment's mean
 constexpr std::size_t kUrgencyBytes = 68 * sizeof(std::uint32_t);  // shaders/stage/upsample_list.glsl
 
 /// In which order the pixels of a cell are shaded: each far from those just before it.
@@ -85,10 +86,11 @@ void Upsampler::allocate(glm::ivec2 size, int cell) {
   forget();
 }
 
-void Upsampler::begin(const gl::Texture& color, const gl::Texture& depth, const Camera& camera, const RenderSettings& settings) {
+void Upsampler::begin(const gl::Texture& color, const gl::Texture& depth, const Camera& camera, const RenderSettings& settings, float meanRadiance) {
   allocate({color.width(), color.height()}, settings.upsample);
   if (!shadeAlike(settings, settings_)) forget();
   settings_ = settings;
+  darkest_ = std::max(kDarkestShare * meanRadiance, 1e-20f);
   surfaces_ = gl::Framebuffer::make({&color, &place_, &colors_, &albedos_, &guide_, &before_}, &depth);
   composed_ = gl::Framebuffer::make({&color});
   depthScaleBefore_ = depthScale_;
@@ -105,7 +107,7 @@ void Upsampler::bindSurfaces() const {
   surfaceProgram_.set("size", glm::vec2(size_));
   surfaceProgram_.set("depthScale", depthScale_);
   surfaceProgram_.set("outlook", settings_.upsampleWeights == UpsampleWeights::lobe ? 1 : 0);
-  surfaceProgram_.set("darkest", kDarkest / settings_.exposure);
+  surfaceProgram_.set("darkest", darkest_);
 }
 
 void Upsampler::setBody(int body, const glm::mat4& clipFromWorldBefore) const {
@@ -133,7 +135,7 @@ void Upsampler::shade(int bodies, const std::function<void(int)>& bindBody) cons
   setHistory(shadeProgram_);
   shadeProgram_.set("jitter", jitter_);
   shadeProgram_.set("cell", cell_);
-  shadeProgram_.set("darkest", settings_.upsampleWeights == UpsampleWeights::lobe ? kDarkest : kDarkest / settings_.exposure);
+  shadeProgram_.set("darkest", settings_.upsampleWeights == UpsampleWeights::lobe ? kDarkest * darkest_ : kDarkest / settings_.exposure);
   for (int body = 0; body < bodies; ++body) {
     bindBody(body);
     shadeProgram_.set("body", body);
@@ -144,6 +146,7 @@ void Upsampler::shade(int bodies, const std::function<void(int)>& bindBody) cons
 void Upsampler::filter() {
   recomputes_ = settings_.upsampleWeights != UpsampleWeights::bilinear && (settings_.recompute.share > 0.0f || settings_.recompute.milliseconds > 0.0f);
   const GLuint zero = 0;
+  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT);  // what the last frame's recomputation stored
   glClearNamedBufferData(urgencies_.id(), GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, &zero);
   urgencies_.bindBase(GL_SHADER_STORAGE_BUFFER, 8);
   pixels_.bindBase(GL_SHADER_STORAGE_BUFFER, 9);
@@ -178,7 +181,7 @@ void Upsampler::recompute(int bodies, const std::function<void(int)>& bindBody, 
   listProgram_.set("budget", pixels);
   listProgram_.set("seed", static_cast<unsigned>(frame_));
   fullscreen(listProgram_);
-  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
 
   const Kept& kept = kept_[now_];
   place_.bind(0);

@@ -25,7 +25,8 @@ class Upsampler {
 
   /// Before anything else of a frame: targets of this size, history where the last frame left any. `color` and `depth` are the renderer's own
   /// and must live until the frame is done.
-  void begin(const gl::Texture& color, const gl::Texture& depth, const Camera& camera, const RenderSettings& settings);
+  /// `meanRadiance` is the environment's.
+  void begin(const gl::Texture& color, const gl::Texture& depth, const Camera& camera, const RenderSettings& settings, float meanRadiance);
   /// Nothing of the frames so far may show in the next.
   void forget() { historyHolds_ = false; }
 
@@ -39,12 +40,15 @@ class Upsampler {
   void filter();
   /// `pixels`: the most that are shaded.
   void recompute(int bodies, const std::function<void(int)>& bindBody, unsigned pixels);
+  /// Holds how many pixels were listed for it, a 32 bit word at kListedOffset.
+  const gl::Buffer& listed() const { return urgencies_; }
+  static constexpr std::size_t kListedOffset = 64 * 4;  // shaders/stage/upsample_list.glsl
+
   /// Adds the light to `color`, or puts a debug view there. Ends the frame.
   void compose();
 
-  /// Pixels that asked to be shaded in the last frame, and that were. Waits for the GPU.
+  /// Pixels that asked to be shaded in the last frame, and that were; none without a budget. Waits for the GPU.
   std::pair<unsigned, unsigned> recomputed() const;
-  int coarsePixels() const { return coarse_.x * coarse_.y; }
   std::size_t bytes() const;
 
  private:
@@ -66,6 +70,7 @@ class Upsampler {
   gl::Framebuffer surfaces_, coarseTarget_, filtered_[2], composed_;
   gl::Buffer urgencies_, pixels_;
   RenderSettings settings_;
+  float darkest_ = 0.0f;
   bool historyHolds_ = false;
   glm::ivec2 jitter_{0};
   glm::vec2 depthScale_{0.0f}, depthScaleBefore_{0.0f};

@@ -112,13 +112,13 @@ void runFrames(const ViewOptions& options, const LoadedScene& scene, const Camer
   glFinish();
   seconds.upload = secondsNow() - start;
 
-  // The first frame of a driver compiles and moves things; where frames are compared it does not count.
-  const int warmUp = options.frames > 1 ? 1 : 0;
+  // The first frame of a driver compiles and moves things; where frames are compared it does not count. Upsampling starts with every pixel shaded once.
+  const int warmUp = settings.upsample > 1 ? settings.upsample * settings.upsample : options.frames > 1 ? 1 : 0;
   std::vector<FrameTimings> timings;
   Animator animator(scene.baked.scene, options.animation, options.moving);
   for (int frame = -warmUp; frame < options.frames; ++frame) {
     if (frame == 0) start = secondsNow();
-    animator.apply(renderer, options.startSeconds + std::max(frame, 0) / 60.0);
+    animator.apply(renderer, options.startSeconds + (settings.upsample > 1 ? frame : std::max(frame, 0)) / 60.0);
     renderer.render(camera, settings);
     if (frame >= 0) timings.push_back(renderer.timings());
     if (afterFrame) afterFrame(renderer, frame);

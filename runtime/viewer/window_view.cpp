@@ -107,7 +107,7 @@ class InteractiveView {
     while (!window_.closing()) {
       const bool moving = state_.continuous || animator_.moves();
       const bool awaiting = pendingEnvironment_.valid() || pendingScene_.valid() || coarse_;
-      window_.pollEvents(unsettled > 0 || moving ? 0.0 : awaiting ? 0.05 : 0.5);
+      window_.pollEvents(unsettled > 0 || moving || settling() ? 0.0 : awaiting ? 0.05 : 0.5);
       if (collectPending() || window_.takeActivity()) unsettled = 3;
       for (const auto& path : window_.takeDroppedFiles()) open(path);
       const glm::ivec2 size = window_.framebufferSize();
@@ -115,7 +115,7 @@ class InteractiveView {
         window_.pollEvents(0.1);
         continue;
       }
-      if (unsettled == 0 && !moving && !coarse_) continue;
+      if (unsettled == 0 && !moving && !coarse_ && !settling()) continue;
       drawFrame(size);
       if (unsettled > 0) --unsettled;
     }
@@ -132,9 +132,11 @@ class InteractiveView {
     if (environment_ != nullptr) {
       render(size);
       renderer_->present(size.x, size.y);
-      if (saveWanted_) save();
+      if (saveWanted_ && (!settling() || animator_.moves())) {
+        save();
+        saveWanted_ = false;
+      }
     }
-    saveWanted_ = false;
     window_.endPanelAndSwap();
   }
 
@@ -223,9 +225,8 @@ class InteractiveView {
     const bool whole = state_.continuous || saveWanted_;
     if (changed) changedAt_ = secondsNow();
     const bool rested = secondsNow() - changedAt_ > kRestSeconds;
-    if (changed) settledFrames_ = 0;
-    const bool settling = wanted.upsample > 1 && settledFrames_ < kSettlingFrames;
-    if (!state_.continuous && !changed && !settling && !(coarse_ && (rested || whole))) return;
+    if (changed || (coarse_ && (rested || whole))) settledFrames_ = 0;
+    if (!state_.continuous && !changed && !settling() && !(coarse_ && (rested || whole))) return;
     ++settledFrames_;
 
     const RenderSettings settings = changed && !whole ? previewSettings(wanted, millisecondsPerSample_) : wanted;
@@ -240,6 +241,9 @@ class InteractiveView {
     coarse_ = !same(settings, wanted);
     stale_ = false;
   }
+
+  /// Upsampling has not shaded every pixel of what is shown. A preview settles when it has given way to the whole picture.
+  bool settling() const { return environment_ != nullptr && state_.upsample > 1 && !coarse_ && settledFrames_ < kSettlingFrames; }
 
   void save() {
     guarded([&] {

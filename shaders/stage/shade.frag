@@ -16,6 +16,7 @@ const int kDebugNormal = 2;
 const int kDebugRoughness = 3;
 const int kDebugVisibility = 4;
 const int kDebugSsdf = 5;
+const int kDebugUpsampling = 6;  // and above: of what is not done here
 
 vec3 signColor(float distance) {
   float x = distance / kHalfPi;
@@ -38,6 +39,7 @@ void main() {
   else if (debugView == kDebugRoughness) radiance = vec3(s.roughness);
   else if (debugView == kDebugVisibility) radiance = vec3(broadVisibility(t, s.ng));
   else if (debugView == kDebugSsdf) radiance = signColor(ssdfAt(t, 2.0 * dot(s.n, s.wo) * s.n - s.wo));
+  else if (debugView >= kDebugUpsampling) radiance = vec3(0.0);
   else {
     vec3 emission = emissionHere(m, s);
     taped(kTapedSurface, s.position, s.alphaT, s.ng);

@@ -34,7 +34,10 @@ const float kWorthDeviation = 0.5;
 const float kWorthFloor = 0.005;
 const float kLargestWorth = 1.5;
 const float kFade = 0.98;          // of the frame before, a frame
+const float kTrusted = 0.97;       // a pixel of more weight than that asks for nothing
 const float kChangeDeviation = 0.4;  // relative
+
+ivec2 sampleAt(ivec2 coarseAt, ivec2 coarse, ivec2 size) { return min(clamp(coarseAt, ivec2(0), coarse - 1) * cell + jitter, size - 1); }
 
 float seen(vec3 light) {
   float x = largestOf(light) * exposure;
@@ -53,9 +56,10 @@ void main() {
   vec3 before = texelFetch(beforeTexture, at, 0).xyz;
 
   ivec2 size = textureSize(guideTexture, 0), coarse = textureSize(coarseGuide, 0);
-  vec2 place = vec2(at - jitter) / float(cell);
-  ivec2 base = ivec2(floor(place));
-  vec2 f = place - vec2(base);
+  ivec2 base = ivec2(floor(vec2(at - jitter) / float(cell)));
+  // Samples of the last, cut cells are moved into the picture.
+  ivec2 first = sampleAt(base, coarse, size), second = sampleAt(base + 1, coarse, size);
+  vec2 f = clamp(vec2(at - first) / vec2(max(second - first, ivec2(1))), 0.0, 1.0);
   float unit = depthUnit(depthScale, g.depth);
 
   vec3 diffuseSum = vec3(0.0), reflectedSum = vec3(0.0);
@@ -69,7 +73,7 @@ void main() {
   for (int i = 0; i < 4; ++i) {
     ivec2 from = clamp(base + ivec2(i & 1, i >> 1), ivec2(0), coarse - 1);
     others[i] = unpackGuide(texelFetch(coarseGuide, from, 0));
-    vec2 step = vec2(min(from * cell + jitter, size - 1) - at);
+    vec2 step = vec2(sampleAt(from, coarse, size) - at);
     same[i] = others[i].depth < 1.0 && others[i].body == g.body ? planeWeight((others[i].depth - g.depth) / unit, a.slope, step) : 0.0;
     if (same[i] > 0.5) nearest = min(nearest, dot(step, step));
   }
@@ -115,7 +119,7 @@ void main() {
   vec2 fresh = max(weights == kLobeWeights ? fits : total, vec2(1.0e-4)) * max(exp(-0.5 * nearest / (kWorthDeviation * kWorthDeviation)), kWorthFloor);
   if (!(divisor.x > 0.0)) fresh = vec2(0.0);
   vec2 worth = kept + fresh;
-  vec2 share = mix(vec2(0.0), kept / max(worth, vec2(1.0e-20)), greaterThan(worth, vec2(0.0)));
+  vec2 share = vec2(worth.x > 0.0 ? kept.x / worth.x : 0.0, worth.y > 0.0 ? kept.y / worth.y : 0.0);
   diffuse = vec4(mix(diffuseSum, h.diffuse, share.x), min(worth.x, kLargestWorth));
   reflected = vec4(mix(reflectedSum, h.reflected, share.y), min(worth.y, kLargestWorth));
 
@@ -132,8 +136,10 @@ void main() {
   float shown = diffuseShown + reflectedShown;
   float weight = shown > 0.0 ? dot(trust, vec2(diffuseShown, reflectedShown)) / shown : min(trust.x, trust.y);
   float contrast = divisor.x > 0.0 ? max(seen(high) - seen(low), 0.02) : 1.0;
-  float urgency = (1.04 - weight) * contrast;
-  quality = vec4(weight, urgency, 0.0, 0.0);
+  // Rounded as it is kept, so that it is counted as it is listed.
+  vec2 asked = unpackHalf2x16(packHalf2x16(vec2(weight, weight < kTrusted ? (1.04 - weight) * contrast : 0.0)));
+  float urgency = asked.y;
+  quality = vec4(asked, 0.0, 0.0);
   if (recompute) {
     int step = urgencyStep(urgency);
     if (step >= 0) atomicAdd(urgencies[step], 1u);

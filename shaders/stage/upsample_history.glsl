@@ -63,6 +63,7 @@ History historyAt(Guide here, vec2 slope, vec3 before) {
     vec2 like = nearness(here, then) * w;
     vec4 d = texelFetch(historyDiffuse, at, 0);
     vec4 r = texelFetch(historyReflected, at, 0);
+    if (!(d.a + r.a >= 0.0)) continue;  // not a number
     vec2 worth = like * vec2(d.a, r.a);
     sum += like;
     h.diffuse += d.rgb * worth.x;

@@ -19,7 +19,7 @@ layout(location = 5) out vec4 before;  // where it was in the frame before: pixe
 
 uniform int body;
 uniform bool outlook;    // take out what the light would be if nothing hid it
-uniform float darkest;   // light that hardly shows
+uniform float darkest;   // light that hardly shows, of this environment: not of the exposure, which may change while history is kept
 uniform mat4 clipFromWorldBefore;
 uniform vec2 size;
 uniform vec2 depthScale;
@@ -85,8 +85,9 @@ void takeOutOpenLight(Surface s, inout Albedos a) {
   float coat = 1.0 - throughCoat(s);
   if (coat > 0.0) reflection = mix(reflection, openReflection(s, kGgx, clampAlpha(s.coatRoughness * s.coatRoughness), shadingNormalTowards(s.ng, s.wo)), coat);
 #endif
-  a.diffuse *= openDiffuse(s.n) + darkest;
-  a.reflected *= reflection + darkest;
+  // In units of the darkest, so that what is kept is light whatever the environment is.
+  a.diffuse *= openDiffuse(s.n) / darkest + 1.0;
+  a.reflected *= reflection / darkest + 1.0;
 }
 
 void main() {

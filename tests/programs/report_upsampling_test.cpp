@@ -47,6 +47,8 @@ TEST(ReportUpsampling, RefusesWhatItCannotCompare) {
   refused({"--material", "ggx"}, 2, "\"ggx\" is not a model and its width");
   refused({"--recompute-budget", "2ms"}, 2, "figures would depend on the machine");
   refused({"--recompute-budget", "nan%"}, 2, "is not a budget");
+  refused({"--frames", "10000", "--size", "1920x1080"}, 2, "need more than 8 GB");
+  refused({"--moving-deg", "2"}, 2, "--moving");
   refused({}, 3, "upsampling_none.glb");
 }
 

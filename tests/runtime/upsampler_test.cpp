@@ -238,5 +238,129 @@ TEST(Upsampler, AMovedMeshIsFollowed) {
   EXPECT_LT(moved, still) << "what was shaded before the mesh moved was of use";
 }
 
+// Every pixel was shaded itself in 16 frames of a still picture: then hardly any is worth shading again.
+TEST(Upsampler, AStillPictureSettles) {
+  const BakedScene baked = sphereOf(metal(0.3f));
+  Renderer renderer(baked), full(baked);
+  renderer.setEnvironment(environment("sunny"));
+  full.setEnvironment(environment("sunny"));
+  const Camera camera = around(baked, 10);
+  const RenderSettings settings = upsampled(4, UpsampleWeights::lobe, 0.1f);
+  renderer.render(camera, settings);
+  const unsigned first = renderer.recomputed().first;
+  for (int f = 0; f < 40; ++f) renderer.render(camera, settings);
+  EXPECT_LT(renderer.recomputed().first, first / 10);
+  const ImageRgba truth = frame(full, camera, smallPicture(kSize));
+  EXPECT_LE(rmse(renderer.readRadiance(), truth), 2e-3 * largest(truth));
+}
+
+// Radiance does not know the exposure; what is kept of it may not either.
+TEST(Upsampler, AnotherExposureChangesNothingThatIsKept) {
+  const BakedScene baked = sphereOf(matte());
+  for (const char* name : {"black", "windows"}) {
+    Renderer renderer(baked);
+    renderer.setEnvironment(environment(name));
+    renderer.setLights({headlight()});
+    RenderSettings settings = upsampled(4);
+    for (int f = 0; f < 20; ++f) renderer.render(around(baked, 20), settings);
+    const ImageRgba before = renderer.readRadiance();
+    settings.exposure *= 1.1f;
+    EXPECT_LE(rmse(frame(renderer, around(baked, 20), settings), before), 0.002 * largest(before)) << name;
+  }
+}
+
+// Light and exposure far from 1 in opposite directions show the same picture.
+TEST(Upsampler, AllIsRelativeToTheEnvironment) {
+  const BakedScene baked = sphereOf(metal(0.1f));
+  Environment scaled = loadEnvironment("sunny");
+  ImageRgba reference;
+  for (const float scale : {1.0f, 1e6f, 1e-6f}) {
+    Environment source = scaled;
+    for (auto& texel : source.radiance.texels) texel *= scale;
+    Renderer renderer(baked);
+    renderer.setEnvironment(prepareEnvironment(source));
+    RenderSettings settings = upsampled(4, UpsampleWeights::lobe, 0.05f);
+    settings.exposure /= scale;
+    ImageRgba image;
+    for (int f = 0; f < 4; ++f) image = frame(renderer, around(baked, static_cast<float>(f)), settings);
+    for (auto& texel : image.texels) texel = glm::vec4(glm::vec3(texel) / scale, texel.a);
+    if (scale == 1.0f) reference = image;
+    else EXPECT_LE(rmse(image, reference), 1e-3 * largest(reference)) << scale;
+  }
+}
+
+// Its light is beyond the range of a float; once it is out, nothing of it is left.
+TEST(Upsampler, WhatIsNotANumberIsNotKept) {
+  const BakedScene baked = sphereOf(metal(0.3f));
+  Renderer renderer(baked);
+  renderer.setEnvironment(environment("overcast"));
+  renderer.setLights({headlight(3e38f)});
+  for (int f = 0; f < 4; ++f) renderer.render(around(baked, 0), upsampled(4, UpsampleWeights::lobe, 0.1f));
+  renderer.setLights({});
+  ImageRgba image;
+  for (int f = 0; f < 20; ++f) image = frame(renderer, around(baked, 0), upsampled(4, UpsampleWeights::lobe, 0.1f));
+  EXPECT_LE(rmse(image, frame(renderer, around(baked, 0), smallPicture(kSize))), 0.01);
+}
+
+TEST(Upsampler, CutCellsAnOrthographicViewAndSupersamplingConverge) {
+  const BakedScene baked = sphereOf(metal(0.3f));
+  Renderer renderer(baked), full(baked);
+  renderer.setEnvironment(environment("sunny"));
+  full.setEnvironment(environment("sunny"));
+  Camera orthographic = around(baked, 15);
+  orthographic.perspective = false;
+  orthographic.verticalExtent = 0.6f;  // the sphere fills the picture to its border
+  for (const int supersample : {1, 2}) {
+    RenderSettings settings = upsampled(4);
+    settings.width = 65;
+    settings.height = 63;
+    settings.supersample = supersample;
+    for (const Camera& camera : {around(baked, 15), orthographic}) {
+      ImageRgba image;
+      for (int f = 0; f < 32; ++f) image = frame(renderer, camera, settings);
+      RenderSettings whole = settings;
+      whole.upsample = 1;
+      const ImageRgba truth = frame(full, camera, whole);
+      EXPECT_LE(rmse(image, truth), 3e-3 * largest(truth));
+      double border = 0.0;
+      for (int y = 0; y < image.height; ++y) border = std::max(border, static_cast<double>(std::abs(image.at(64, y).r - truth.at(64, y).r)));
+      EXPECT_LE(border, 0.01 * largest(truth)) << "the last column";
+    }
+  }
+}
+
+TEST(Upsampler, ABudgetOfTimeShadesSomeAndNeverMoreThanAsked) {
+  const BakedScene baked = sphereOf(metal(0.1f));
+  Renderer renderer(baked);
+  renderer.setEnvironment(environment("windows"));
+  RenderSettings settings = upsampled(4);
+  settings.width = settings.height = 4 * kSize;
+  settings.recompute = {.share = 0.0f, .milliseconds = 1e4f};
+  unsigned most = 0;
+  for (int f = 0; f < 12; ++f) {
+    renderer.render(around(baked, 3.0f * static_cast<float>(f)), settings);
+    const auto [wanted, shaded] = renderer.recomputed();
+    EXPECT_LE(shaded, wanted);
+    if (f == 0) {
+      EXPECT_LE(shaded, 1024u) << "nothing is known of the driver yet";
+    }
+    most = std::max(most, shaded);
+  }
+  EXPECT_GT(most, 1024u) << "ten seconds are enough for more";
+}
+
+TEST(Upsampler, ItsDebugViewsAreBlackWithoutIt) {
+  const BakedScene baked = sphereOf(metal(0.3f));
+  Renderer renderer(baked);
+  renderer.setEnvironment(environment("sunny"));
+  for (const auto view : {DebugView::totalWeight, DebugView::age, DebugView::recomputed}) {
+    RenderSettings settings = smallPicture(kSize);
+    settings.debugView = view;
+    EXPECT_EQ(largest(frame(renderer, around(baked, 0), settings)), 0.0f);
+    settings.upsample = 4;
+    EXPECT_TRUE(largest(frame(renderer, around(baked, 0), settings)) <= 1.0f);
+  }
+}
+
 }  // namespace
 }  // namespace chiaro

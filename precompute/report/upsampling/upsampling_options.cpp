@@ -50,9 +50,10 @@ void declareUpsamplingOptions(CLI::App& app, UpsamplingOptions& options) {
       ->type_name("P%")
       ->capture_default_str();
   app.add_option("--frames", settings.frames, "Frames that count")->type_name("N")->capture_default_str();
+  app.add_option("--warm-up", settings.warmUp, "Frames before those, which do not count")->type_name("N")->capture_default_str();
   app.add_option("--turn-deg", settings.turnDegrees, "How far the camera goes around what it looks at, a frame")->type_name("A")->capture_default_str();
-  app.add_option("--moving", settings.moving, "A mesh of the scene that turns about +Y through its middle")->type_name("MESH");
-  app.add_option("--moving-deg", settings.movingDegrees, "How far it turns, a frame")->type_name("A")->capture_default_str();
+  auto* moving = app.add_option("--moving", settings.moving, "A mesh of the scene that turns about +Y through its middle")->type_name("MESH");
+  app.add_option("--moving-deg", settings.movingDegrees, "How far it turns, a frame")->type_name("A")->capture_default_str()->needs(moving);
   app.add_option("--threads", settings.threads, "CPU threads, 0 is all; never changes the figures")->type_name("N")->capture_default_str();
   app.add_flag("-q,--quiet", options.quiet, "Print nothing but errors");
 }
@@ -69,6 +70,10 @@ void finishUpsamplingOptions(UpsamplingOptions& options) {
   if (budget.milliseconds > 0.0f) throw usageError("--recompute-budget", "figures would depend on the machine", "give a share such as 10%");
   settings.recompute = budget.share;
   if (settings.frames < 1 || settings.frames > 10000) throw usageError("--frames", "must lie between 1 and 10000", "give a number such as 60");
+  if (settings.warmUp < 0 || settings.warmUp > 10000) throw usageError("--warm-up", "must lie between 0 and 10000", "give a number such as 16");
+  constexpr double kMostBytes = 8e9, kPixelBytes = 12.125;  // the full frames are kept
+  if (kPixelBytes * settings.size.x * settings.size.y * settings.frames > kMostBytes)
+    throw usageError("--frames", "so many frames of this size need more than 8 GB", "give fewer, or a smaller size");
   requireAngle(settings.turnDegrees, "--turn-deg");
   requireAngle(settings.movingDegrees, "--moving-deg");
   if (settings.threads < 0 || settings.threads > 1024) throw usageError("--threads", "must lie between 0 and 1024", "give 0 for all cores");

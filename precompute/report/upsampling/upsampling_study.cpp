@@ -27,10 +27,15 @@ std::vector<Material> materialsOf(Scene scene, const StudyMaterial& material) {
     m.anisotropyStrength = 0.0f;
     m.anisotropyTexture = kNone;
     m.clearcoatFactor = 0.0f;
+    m.sheenColorFactor = m.emissiveFactor = glm::vec3(0.0f);
+    m.reflectanceF0.reset();
+    m.alphaMode = AlphaMode::opaque;
     m.reflectanceWidth = glm::vec2(material.parameter);
   }
   return scene.materials;
 }
+
+constexpr double kStartDegrees = 80.0;
 
 /// Camera and poses of a frame; negative ones come before those that count.
 class Path {
@@ -48,8 +53,8 @@ class Path {
   }
 
   std::vector<glm::mat4> poses(int frame) const {
-    // Far from where it was baked: a turn of 0 is no movement.
-    return mesh_ ? mesh_->poses(static_cast<double>(settings_.movingDegrees) * (frame + 1000)) : rest_;
+    // Aside from where it was baked, where a pose would be no movement.
+    return mesh_ ? mesh_->poses(kStartDegrees + static_cast<double>(settings_.movingDegrees) * frame) : rest_;
   }
 
  private:
@@ -60,92 +65,123 @@ class Path {
   std::optional<MovingMesh> mesh_;
 };
 
-struct Frames {
-  std::vector<ImageRgb> shown;      ///< tone-mapped and encoded
-  std::vector<PixelMask> objects;
-  std::vector<double> milliseconds, filterMilliseconds, recomputed;
+/// Tone-mapped and encoded.
+struct Shown {
+  ImageRgb picture;
+  PixelMask objects;
 };
+
+Shown shownOf(const ImageRgba& radiance, const RenderSettings& settings) {
+  Shown shown{{radiance.width, radiance.height, {}}, {}};
+  for (const auto& texel : radiance.texels) {
+    shown.picture.texels.push_back(isFinite(glm::vec3(texel)) ? displayColor(glm::vec3(texel), settings.exposure, settings.toneMap) : glm::vec3(texel));
+    shown.objects.push_back(texel.a > 0.5f);
+  }
+  return shown;
+}
 
 double median(std::vector<double> values) {
   if (values.empty()) return 0.0;
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
-  return values[values.size() / 2];
+  std::sort(values.begin(), values.end());
+  const std::size_t half = values.size() / 2;
+  return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
 }
 
-Frames draw(Renderer& renderer, Path path, const RenderSettings& settings, const UpsamplingSettings& study, const std::function<void(double)>& progress) {
-  Frames frames;
-  const int warmUp = settings.upsample > 1 ? study.warmUp : 0;
+struct Costs {
+  std::vector<double> milliseconds, filterMilliseconds, recomputed;
+};
+
+/// Draws the frames that do not count and those that do, and hands out the latter as they come.
+Costs draw(Renderer& renderer, const Path& path, const RenderSettings& settings, const UpsamplingSettings& study, const std::function<void(double)>& progress,
+           const std::function<void(std::size_t, Shown)>& take) {
+  Costs costs;
+  const int warmUp = settings.upsample > 1 ? study.warmUp : 1;  // a first frame compiles and moves things
   const double pixels = static_cast<double>(study.size.x) * study.size.y;
   for (int f = -warmUp; f < study.frames; ++f) {
     progress(static_cast<double>(f + warmUp) / (study.frames + warmUp));
     renderer.setPoses(path.poses(f));
     renderer.render(path.camera(f), settings);
-    const ImageRgba radiance = renderer.readRadiance();
     if (f < 0) continue;
-    ImageRgb shown{radiance.width, radiance.height, {}};
-    PixelMask objects;
-    for (const auto& texel : radiance.texels) {
-      shown.texels.push_back(isFinite(glm::vec3(texel)) ? displayColor(glm::vec3(texel), settings.exposure, settings.toneMap) : glm::vec3(texel));
-      objects.push_back(texel.a > 0.5f);
-    }
-    frames.shown.push_back(std::move(shown));
-    frames.objects.push_back(std::move(objects));
+    take(static_cast<std::size_t>(f), shownOf(renderer.readRadiance(), settings));
     const FrameTimings timings = renderer.timings();
-    frames.milliseconds.push_back(timings.passes.back().second);
+    costs.milliseconds.push_back(timings.passes.back().second);
     for (const auto& [name, milliseconds] : timings.passes)
-      if (name == "upsample") frames.filterMilliseconds.push_back(milliseconds);
-    frames.recomputed.push_back(renderer.recomputed().second / pixels);
+      if (name == "upsample") costs.filterMilliseconds.push_back(milliseconds);
+    costs.recomputed.push_back(renderer.recomputed().second / pixels);
   }
-  return frames;
+  return costs;
 }
 
-/// Mean absolute changes between two frames, over the pixels that both full frames cover.
-void addChanges(const Frames& test, const Frames& full, std::size_t frame, glm::dvec3& sums, double& count) {
-  for (std::size_t i = 0; i < full.shown[frame].texels.size(); ++i) {
-    if (!full.objects[frame][i] || !full.objects[frame - 1][i]) continue;
-    const glm::dvec3 t(test.shown[frame].texels[i] - test.shown[frame - 1].texels[i]), r(full.shown[frame].texels[i] - full.shown[frame - 1].texels[i]);
-    for (int c = 0; c < 3; ++c) sums += glm::dvec3(std::abs(t[c]), std::abs(r[c]), std::abs(t[c] - r[c])) / 3.0;
-    count += 1.0;
-  }
-}
+/// A variant beside the full frames, frame by frame.
+class Comparison {
+ public:
+  Comparison(const std::vector<Shown>& full, const UpsamplingSettings& study) : full_(full), study_(study) {}
 
-VariantResult compare(const Frames& test, const Frames& full, const StudyVariant& variant, const UpsamplingSettings& study) {
-  VariantResult result;
-  result.variant = variant;
-  double squares = 0.0, wholeSquares = 0.0, weights = 0.0, flip = 0.0, flips = 0.0, changes = 0.0;
-  glm::dvec3 changed(0.0);
-  result.lowestPsnr = kHighestPsnr;
-  for (std::size_t f = 0; f < full.shown.size(); ++f) {
-    const double rmse = rootMeanSquareError(test.shown[f], full.shown[f], full.objects[f]), whole = rootMeanSquareError(test.shown[f], full.shown[f]);
-    squares += rmse * rmse;
-    wholeSquares += whole * whole;
-    weights += 1.0;
-    result.lowestPsnr = std::min(result.lowestPsnr, psnrOf(rmse));
-    if (f % static_cast<std::size_t>(study.flipEvery) == 0) {
-      flip += meanOf(ldrFlip(full.shown[f], test.shown[f], {.threads = study.threads}), full.objects[f]);
-      flips += 1.0;
+  void add(std::size_t frame, Shown test) {
+    const Shown& full = full_[frame];
+    const double rmse = rootMeanSquareError(test.picture, full.picture, full.objects), whole = rootMeanSquareError(test.picture, full.picture);
+    squares_ += rmse * rmse;
+    wholeSquares_ += whole * whole;
+    lowest_ = std::min(lowest_, psnrOf(rmse));
+    if (frame % static_cast<std::size_t>(flipEvery(study_)) == 0) {
+      flip_ += meanOf(ldrFlip(full.picture, test.picture, {.threads = study_.threads}), full.objects);
+      flips_ += 1.0;
     }
-    if (f > 0) addChanges(test, full, f, changed, changes);
+    if (frame > 0) addChanges(test.picture, frame);
+    before_ = std::move(test.picture);
   }
-  result.rmse = std::sqrt(squares / weights);
-  result.psnr = psnrOf(result.rmse);
-  result.wholePsnr = psnrOf(std::sqrt(wholeSquares / weights));
-  result.flip = flip / flips;
-  result.flicker = (changed.x - changed.y) / std::max(changes, 1.0);
-  result.changeError = changed.z / std::max(changes, 1.0);
-  for (const double share : test.recomputed) result.recomputed += share / static_cast<double>(test.recomputed.size());
-  result.milliseconds = median(test.milliseconds);
-  result.filterMilliseconds = median(test.filterMilliseconds);
-  return result;
-}
+
+  VariantResult result(const StudyVariant& variant, const Costs& costs) const {
+    VariantResult result;
+    const auto frames = static_cast<double>(full_.size());
+    result.variant = variant;
+    result.rmse = std::sqrt(squares_ / frames);
+    result.psnr = psnrOf(result.rmse);
+    result.wholePsnr = psnrOf(std::sqrt(wholeSquares_ / frames));
+    result.lowestPsnr = lowest_;
+    result.flip = flip_ / flips_;
+    result.flicker = (changes_.x - changes_.y) / std::max(changed_, 1.0);
+    result.changeError = changes_.z / std::max(changed_, 1.0);
+    double covered = 0.0, all = 0.0;
+    for (const auto& full : full_) {
+      covered += static_cast<double>(std::count(full.objects.begin(), full.objects.end(), true));
+      all += static_cast<double>(full.objects.size());
+    }
+    for (const double share : costs.recomputed) result.recomputed += share / frames;
+    result.recomputedOfObjects = result.recomputed * all / std::max(covered, 1.0);
+    result.milliseconds = median(costs.milliseconds);
+    result.filterMilliseconds = median(costs.filterMilliseconds);
+    return result;
+  }
+
+ private:
+  /// Mean absolute changes between two frames, over the pixels that both full frames cover.
+  void addChanges(const ImageRgb& test, std::size_t frame) {
+    const Shown &now = full_[frame], &then = full_[frame - 1];
+    for (std::size_t i = 0; i < now.objects.size(); ++i) {
+      if (!now.objects[i] || !then.objects[i]) continue;
+      const glm::dvec3 t(test.texels[i] - before_.texels[i]), r(now.picture.texels[i] - then.picture.texels[i]);
+      for (int c = 0; c < 3; ++c) changes_ += glm::dvec3(std::abs(t[c]), std::abs(r[c]), std::abs(t[c] - r[c])) / 3.0;
+      changed_ += 1.0;
+    }
+  }
+
+  const std::vector<Shown>& full_;
+  const UpsamplingSettings& study_;
+  ImageRgb before_;
+  double squares_ = 0.0, wholeSquares_ = 0.0, lowest_ = kHighestPsnr, flip_ = 0.0, flips_ = 0.0, changed_ = 0.0;
+  glm::dvec3 changes_{0.0};  // of the variant, of the full frames, of their difference
+};
 
 }  // namespace
 
 std::string StudyMaterial::name() const {
   char text[64];
-  std::snprintf(text, sizeof text, "%s_%.4g", model == Reflectance::blinnPhong ? "blinn" : "ggx", static_cast<double>(parameter));
+  std::snprintf(text, sizeof text, "%s_%.6g", reflectanceNames()[static_cast<std::size_t>(model)].c_str(), static_cast<double>(parameter));
   return text;
 }
+
+int flipEvery(const UpsamplingSettings& settings) { return std::max(1, settings.frames / 8); }
 
 std::vector<StudyMaterial> standardMaterials() {
   std::vector<StudyMaterial> all;
@@ -184,24 +220,26 @@ std::vector<MaterialResult> studyUpsampling(const BakedScene& baked, const Upsam
       if (!picture) return;
       picture(material.name(), variant, renderer.readDisplay());
       if (drawn.upsample == 1) return;
-      // Another look at the same frame: its camera and poses stand still, so the history it starts from is one frame older.
+      // The last frame once more: its history is that frame itself.
       RenderSettings view = drawn;
       view.debugView = DebugView::totalWeight;
-      renderer.render(path.camera(study.frames), view);
+      renderer.render(path.camera(study.frames - 1), view);
       picture(material.name(), variant + "_weight", renderer.readDisplay());
     };
-    const Frames full = draw(renderer, path, settings, study, report("full"));
+    std::vector<Shown> full;
+    const Costs fullCosts = draw(renderer, path, settings, study, report("full"), [&](std::size_t, Shown shown) { full.push_back(std::move(shown)); });
     show("full", settings);
-    MaterialResult result{material, median(full.milliseconds), {}};
+    MaterialResult result{material, median(fullCosts.milliseconds), {}};
     for (const auto& variant : variants) {
       RenderSettings upsampled = settings;
       upsampled.upsample = study.upsample;
       upsampled.upsampleWeights = variant.weights;
       upsampled.recompute = {.share = variant.recompute, .milliseconds = 0.0f};
       renderer.setEnvironment(light);  // no history is left
-      const Frames test = draw(renderer, path, upsampled, study, report(variant.name));
+      Comparison comparison(full, study);
+      const Costs costs = draw(renderer, path, upsampled, study, report(variant.name), [&](std::size_t f, Shown shown) { comparison.add(f, std::move(shown)); });
       show(variant.name, upsampled);
-      result.variants.push_back(compare(test, full, variant, study));
+      result.variants.push_back(comparison.result(variant, costs));
     }
     results.push_back(std::move(result));
   }

@@ -41,10 +41,12 @@ struct UpsamplingSettings {
   std::string moving;          ///< a mesh that turns about +Y through its middle; empty: none
   float movingDegrees = 1.0f;  ///< a frame
   float recompute = 0.1f;
-  int flipEvery = 6;           ///< frames
-  int warmUp = 4;              ///< frames before the first that counts
+  int warmUp = 16;             ///< frames before the first that counts: each pixel of a cell of 4 x 4 is shaded once
   int threads = 0;
 };
+
+/// FLIP is slow: some eight frames of a run have it.
+int flipEvery(const UpsamplingSettings& settings);
 
 /// All of tone-mapped, sRGB-encoded channels in [0,1] over the pixels that the full frame covers, all frames together.
 struct VariantResult {
@@ -52,10 +54,11 @@ struct VariantResult {
   double rmse = 0.0, psnr = 0.0;
   double wholePsnr = 0.0;    ///< over all pixels, background too
   double lowestPsnr = 0.0;   ///< of any frame
-  double flip = 0.0;         ///< mean over every flipEvery-th frame
+  double flip = 0.0;         ///< mean over every flipEvery()-th frame
   double flicker = 0.0;      ///< mean |change from frame to frame| less the full frames' own
   double changeError = 0.0;  ///< mean |change from frame to frame minus the full frames' change|
   double recomputed = 0.0;   ///< share of all pixels
+  double recomputedOfObjects = 0.0;  ///< share of those that objects cover
   double milliseconds = 0.0; ///< median GPU time of a frame
   double filterMilliseconds = 0.0;
 };

@@ -8,13 +8,13 @@ namespace chiaro {
 std::string upsamplingTable(const std::vector<MaterialResult>& results) {
   std::string text;
   char line[256];
-  std::snprintf(line, sizeof line, "%-12s %-18s %8s %7s %7s %7s %8s %9s %9s %8s %7s\n", "material", "variant", "rmse", "psnr", "whole", "lowest", "flip", "flicker",
-                "change", "shaded", "time");
+  std::snprintf(line, sizeof line, "%-16s %-18s %8s %7s %7s %7s %8s %9s %9s %8s %10s %7s\n", "material", "variant", "rmse", "psnr", "whole", "lowest", "flip", "flicker",
+                "change", "shaded", "of objects", "time");
   text += line;
   for (const auto& material : results) {
     for (const auto& one : material.variants) {
-      std::snprintf(line, sizeof line, "%-12s %-18s %8.5f %7.2f %7.2f %7.2f %8.4f %+9.5f %9.5f %7.1f%% %7.3f\n", material.material.name().c_str(), one.variant.name.c_str(),
-                    one.rmse, one.psnr, one.wholePsnr, one.lowestPsnr, one.flip, one.flicker, one.changeError, 100.0 * one.recomputed,
+      std::snprintf(line, sizeof line, "%-16s %-18s %8.5f %7.2f %7.2f %7.2f %8.4f %+9.5f %9.5f %7.1f%% %9.1f%% %7.3f\n", material.material.name().c_str(), one.variant.name.c_str(),
+                    one.rmse, one.psnr, one.wholePsnr, one.lowestPsnr, one.flip, one.flicker, one.changeError, 100.0 * one.recomputed, 100.0 * one.recomputedOfObjects,
                     one.milliseconds / material.fullMilliseconds);
       text += line;
     }
@@ -31,9 +31,12 @@ std::string upsamplingJson(const std::vector<MaterialResult>& results, const Ups
   json["scene"] = options.scene.string();
   json["gl_renderer"] = glRenderer;
   json["environment"] = settings.environment;
+  json["camera"] = options.camera;
   json["size"] = {settings.size.x, settings.size.y};
   json["upsample"] = settings.upsample;
   json["frames"] = settings.frames;
+  json["warm_up"] = settings.warmUp;
+  json["flip_every"] = flipEvery(settings);
   json["turn_deg"] = settings.turnDegrees;
   json["moving"] = settings.moving;
   json["moving_deg"] = settings.movingDegrees;
@@ -51,6 +54,7 @@ std::string upsamplingJson(const std::vector<MaterialResult>& results, const Ups
                           {"flicker", one.flicker},
                           {"change_error", one.changeError},
                           {"recomputed_share", one.recomputed},
+                          {"recomputed_share_of_objects", one.recomputedOfObjects},
                           {"gpu_ms", one.milliseconds},
                           {"filter_gpu_ms", one.filterMilliseconds}});
     }
