@@ -13,6 +13,8 @@
 namespace chiaro {
 namespace {
 
+constexpr std::size_t kNoDraw = static_cast<std::size_t>(-1);
+
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 GLint wrapMode(Wrap wrap) {
@@ -65,7 +67,9 @@ void GpuScene::uploadGeometry(const Scene& scene) {
     }
     for (const auto index : primitive.indices) indices.push_back(base + index);
     draw.center = bounds.empty() ? glm::vec3(0) : bounds.center();
+    primitiveDraws_.push_back(draws_.size());
     if (draw.indexCount > 0) draws_.push_back(draw);
+    else primitiveDraws_.back() = kNoDraw;
   }
   if (indices.empty()) throw inputError("scene", "has no triangle", "choose another file");
   requireStorage(vertices.size() * sizeof(VertexBlock), "vertices");
@@ -104,6 +108,53 @@ void GpuScene::uploadTextures(const Scene& scene) {
                                  make(material.clearcoatRoughnessTexture, false), make(material.sheenColorTexture, true),
                                  make(material.sheenRoughnessTexture, false)});
   }
+}
+
+void GpuScene::setShape(std::size_t primitive, std::span<const glm::vec3> positions, std::span<const glm::vec3> normals) {
+  if (primitive >= primitiveDraws_.size()) throw Error(ExitCode::failed, "setShapes", "there is no primitive " + std::to_string(primitive), "pass those of the scene");
+  if (primitiveDraws_[primitive] == kNoDraw) return;
+  GpuDraw& draw = draws_[primitiveDraws_[primitive]];
+  if (positions.size() != draw.vertexCount || normals.size() != draw.vertexCount)
+    throw Error(ExitCode::failed, "setShapes", std::to_string(positions.size()) + " positions and " + std::to_string(normals.size()) + " normals for " + std::to_string(draw.vertexCount) + " vertices",
+                "pass one per vertex");
+  if (!before_) {
+    std::vector<glm::vec4> rest;
+    for (const auto& vertex : vertices_.read<VertexBlock>()) rest.push_back(vertex.positionU);
+    before_ = gl::Buffer(rest);
+    bytes_ += before_.size();
+  }
+  Shape& shape = shapes_[primitive];
+  const std::size_t offset = draw.firstVertex * sizeof(VertexBlock);
+  if (shape.vertices.empty()) {
+    shape.vertices.resize(draw.vertexCount);
+    vertices_.readBytes(offset, shape.vertices.data(), draw.vertexCount * sizeof(VertexBlock));
+  }
+  Bounds bounds;
+  for (std::size_t v = 0; v < draw.vertexCount; ++v) {
+    shape.vertices[v].positionU = glm::vec4(positions[v], shape.vertices[v].positionU.w);
+    shape.vertices[v].normalV = glm::vec4(normals[v], shape.vertices[v].normalV.w);
+    bounds.lower = glm::min(bounds.lower, positions[v]);
+    bounds.upper = glm::max(bounds.upper, positions[v]);
+  }
+  draw.center = bounds.center();
+  shape.moved = true;
+  vertices_.write(offset, std::span<const VertexBlock>(shape.vertices));
+}
+
+void GpuScene::keepShapes() {
+  for (auto& [primitive, shape] : shapes_) {
+    if (!shape.moved) continue;
+    std::vector<glm::vec4> positions;
+    for (const auto& vertex : shape.vertices) positions.push_back(vertex.positionU);
+    before_.write(draws_[primitiveDraws_[primitive]].firstVertex * sizeof(glm::vec4), std::span<const glm::vec4>(positions));
+    shape.moved = false;
+  }
+}
+
+MaterialFeatures GpuScene::features() const {
+  MaterialFeatures all = features_;
+  all.shapes = static_cast<bool>(before_);
+  return all;
 }
 
 void GpuScene::setMaterials(const std::vector<Material>& materials) {
@@ -156,6 +207,7 @@ void GpuScene::bindBuffers() const {
   vertices_.bindBase(GL_SHADER_STORAGE_BUFFER, 0);
   indices_.bindBase(GL_SHADER_STORAGE_BUFFER, 1);
   materialBuffer_.bindBase(GL_SHADER_STORAGE_BUFFER, 2);
+  if (before_) before_.bindBase(GL_SHADER_STORAGE_BUFFER, 10);
   transfer_.bind();
 }
 

@@ -3,6 +3,8 @@
 
 #include <array>
 #include <glm/glm.hpp>
+#include <map>
+#include <span>
 #include <vector>
 
 #include "assets/transfer/transfer.h"
@@ -29,6 +31,10 @@ class GpuScene {
   explicit GpuScene(const BakedScene& baked);
 
   void setMaterials(const std::vector<Material>& materials);
+  /// Of a primitive of the scene, as many as it has vertices. Throws Error (failed).
+  void setShape(std::size_t primitive, std::span<const glm::vec3> positions, std::span<const glm::vec3> normals);
+  /// At the end of a frame: where vertices are is where they were.
+  void keepShapes();
   std::size_t meshCount() const { return meshCount_; }
   /// Geometry, transfer and materials to their binding points.
   void bindBuffers() const;
@@ -37,7 +43,7 @@ class GpuScene {
 
   const std::vector<GpuDraw>& draws() const { return draws_; }
   const Material& material(int index) const { return materials_[static_cast<std::size_t>(index)]; }
-  const MaterialFeatures& features() const { return features_; }
+  MaterialFeatures features() const;
   const GpuTransfer& transfer() const { return transfer_; }
   float directionSharpness() const { return directionSharpness_; }
   const std::vector<glm::vec3>& directions() const { return directions_; }
@@ -49,7 +55,14 @@ class GpuScene {
   void uploadTextures(const Scene& scene);
   void writeMaterials();
 
+  struct Shape {
+    std::vector<VertexBlock> vertices;
+    bool moved = false;
+  };
   std::vector<GpuDraw> draws_;
+  std::vector<std::size_t> primitiveDraws_;  // of each primitive of the scene, into draws_
+  std::map<std::size_t, Shape> shapes_;      // by primitive
+  gl::Buffer before_;                        // positions in the frame before, once any shape was set
   std::size_t meshCount_ = 0;
   std::vector<Material> materials_;  // the scene's, then the default
   std::vector<Light> lights_;

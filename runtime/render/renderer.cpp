@@ -461,6 +461,7 @@ struct Renderer::Impl {
       fullscreen(resolveProgram);
     });
     totalTimer.end();
+    scene.keepShapes();
     timers.resize(pass);
     last = settings;
     drawn = true;
@@ -505,6 +506,10 @@ void Renderer::setLights(const std::vector<Light>& lights) { impl_->setLights(li
 void Renderer::setMaterials(const std::vector<Material>& materials) { impl_->scene.setMaterials(materials); }
 
 void Renderer::setWetness(const Wetness& wetness) { impl_->setWetness(wetness); }
+
+void Renderer::setShapes(const std::vector<PrimitiveShape>& shapes) {
+  for (const auto& shape : shapes) impl_->scene.setShape(shape.primitive, shape.positions, shape.normals);
+}
 
 void Renderer::setPoses(const std::vector<glm::mat4>& worldFromBaked) { impl_->setPoses(worldFromBaked); }
 

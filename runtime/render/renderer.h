@@ -10,6 +10,7 @@
 
 #include "assets/image/image.h"
 #include "assets/scene/scene.h"
+#include "assets/scene/vertex_cache.h"
 #include "assets/transfer/transfer.h"
 #include "runtime/environment/sg_environment.h"
 #include "runtime/render/render_settings.h"
@@ -48,6 +49,10 @@ class Renderer {
   /// Where each mesh of the scene (Scene::meshNames) stands: rotations and shifts from where it was baked, the identity at first. A moved mesh keeps
   /// the transfer that it was baked with, in its own frame: what hid it there still does, and its shadow on others stays behind.
   void setPoses(const std::vector<glm::mat4>& worldFromBaked);
+
+  /// Primitives that change shape; the others stay as they are. Shaded with the transfer of the shape that was baked, in its directions: what hid a vertex there still does
+  /// (RenderSettings::shadows turns that off). The first call costs a compilation and 16 bytes a vertex of the scene. Throws Error (failed) for other numbers of vertices.
+  void setShapes(const std::vector<PrimitiveShape>& shapes);
 
   /// Renders one frame into the renderer's own targets.
   void render(const Camera& camera, const RenderSettings& settings);

@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kPeriod = 4.0;
 constexpr double kTurnDegreesPerSecond = 30.0;
+constexpr double kShapesPerSecond = 30.0;
 constexpr int kSize = 256, kCoarsestCells = 8, kOctaves = 4;
 constexpr float kShore = 0.2f;         // between dry and soaked, as a share of all heights
 constexpr float kMapsAcross = 1.5f;    // the scene's diagonal, so that the repetition hardly shows
@@ -69,9 +70,10 @@ const Wetness& Shower::at(double seconds) {
   return wetness_;
 }
 
-Animator::Animator(const Scene& scene, Animation animation, const std::string& moving) {
+Animator::Animator(const Scene& scene, Animation animation, const std::string& moving, const VertexCacheFiles& shapes) {
   if (animation == Animation::wetness) shower_.emplace(scene);
   if (!moving.empty()) moving_.emplace(scene, moving);
+  if (!shapes.frames.empty()) shapes_.emplace(scene, shapes);
   if (animation != Animation::scene) return;
   if (scene.motions.empty()) throw usageError("--animate", "the scene has no animation of rigid meshes", "give another animation, or bake an animated file");
   played_.meshNames = scene.meshNames;
@@ -80,6 +82,7 @@ Animator::Animator(const Scene& scene, Animation animation, const std::string& m
 
 void Animator::apply(Renderer& renderer, double seconds) {
   if (shower_) renderer.setWetness(shower_->at(seconds));
+  if (shapes_) renderer.setShapes(shapes_->at(kShapesPerSecond * seconds));
   if (!moving_ && played_.motions.empty()) return;
   std::vector<glm::mat4> poses;
   if (!played_.motions.empty()) {

@@ -7,6 +7,7 @@
 
 #include "assets/scene/moving_mesh.h"
 #include "assets/scene/scene.h"
+#include "assets/scene/vertex_cache.h"
 #include "runtime/render/renderer.h"
 #include "runtime/render/wetness.h"
 
@@ -31,18 +32,19 @@ class Shower {
   Wetness wetness_;
 };
 
-/// One of the above, and a mesh that turns 30 degrees a second where one is named.
+/// One of the above, a mesh that turns 30 degrees a second where one is named, and one that changes shape 30 times a second where frames are.
 class Animator {
  public:
   /// Throws Error (usage) for a scene without motions of its own that is to play them, and for a mesh that it has not.
-  Animator(const Scene& scene, Animation animation, const std::string& moving);
+  Animator(const Scene& scene, Animation animation, const std::string& moving, const VertexCacheFiles& shapes = {});
 
-  bool moves() const { return shower_ || moving_ || !played_.motions.empty(); }
+  bool moves() const { return shower_ || moving_ || shapes_ || !played_.motions.empty(); }
   void apply(Renderer& renderer, double seconds);
 
  private:
   std::optional<Shower> shower_;
   std::optional<MovingMesh> moving_;
+  std::optional<VertexCache> shapes_;
   Scene played_;  // names of meshes and motions, nothing else
 };
 

@@ -118,6 +118,9 @@ void declareViewOptions(CLI::App& app, ViewOptions& options, ViewOptionTexts& te
   app.add_option("--animate", texts.animate, "none; wetness: a shower wets everything puddle by puddle and it dries again, in 4 seconds or 240 frames of a run that ends; scene: the file's own animation, over and over")
       ->type_name("NAME")->capture_default_str()->group(view);
   app.add_option("--moving", options.moving, "A mesh of the scene that turns about +Y through its middle, 30 degrees a second, of which a run that ends has 60 frames")->type_name("MESH")->group(view);
+  auto* frames = app.add_option("--vertex-frames", options.shapes.frames, "Raw float32 x y z of every vertex of --vertex-rest, frame after frame, 30 a second, forth and back")->type_name("FILE")->group(view);
+  auto* rest = app.add_option("--vertex-rest", options.shapes.rest, "The mesh file (.ply, .off) that was baked")->type_name("FILE")->group(view)->needs(frames);
+  frames->needs(rest);
   app.add_option("--start", options.startSeconds, "Where the animations start, in seconds")->type_name("S")->capture_default_str()->group(view);
   app.add_option("--model", texts.model, "Reflectance model of every material: " + reflectanceNameList())->type_name("NAME")->group(view);
   app.add_flag("--energy-compensation", options.energyCompensation, "GGX gives back what scatters more than once between its facets")->group(view);

@@ -10,6 +10,7 @@
 #include "assets/image/display.h"
 #include "assets/scene/camera_spec.h"
 #include "assets/scene/material_override.h"
+#include "assets/scene/vertex_cache.h"
 #include "runtime/render/renderer.h"
 #include "runtime/viewer/animation.h"
 
@@ -48,6 +49,7 @@ struct ViewOptions {
   UpsampleWeights upsampleWeights = UpsampleWeights::lobe;
   RecomputeBudget recompute;
   Animation animation = Animation::none;
+  VertexCacheFiles shapes;                ///< a mesh that changes shape
   std::string moving;                     ///< a mesh that turns; empty: none
   double startSeconds = 0.0;              ///< of the animation
   int frames = 1;

@@ -115,7 +115,7 @@ void runFrames(const ViewOptions& options, const LoadedScene& scene, const Camer
   // The first frame of a driver compiles and moves things; where frames are compared it does not count. Upsampling starts with every pixel shaded once.
   const int warmUp = settings.upsample > 1 ? settings.upsample * settings.upsample : options.frames > 1 ? 1 : 0;
   std::vector<FrameTimings> timings;
-  Animator animator(scene.baked.scene, options.animation, options.moving);
+  Animator animator(scene.baked.scene, options.animation, options.moving, options.shapes);
   for (int frame = -warmUp; frame < options.frames; ++frame) {
     if (frame == 0) start = secondsNow();
     animator.apply(renderer, options.startSeconds + (settings.upsample > 1 ? frame : std::max(frame, 0)) / 60.0);

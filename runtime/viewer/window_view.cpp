@@ -97,7 +97,7 @@ class InteractiveView {
         window_(options.size, titleOf(options.scene)),
         renderer_(std::make_unique<Renderer>(loaded_.baked)),
         state_(panelFor(options, loaded_)),
-        animator_(loaded_.baked.scene, options.animation, options.moving) {
+        animator_(loaded_.baked.scene, options.animation, options.moving, options.shapes) {
     if (!options.quiet) warnOfLeftOut(loaded_);
     choose(0);
   }

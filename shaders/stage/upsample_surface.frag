@@ -17,6 +17,15 @@ layout(location = 3) out uvec4 albedos;
 layout(location = 4) out uvec4 guide;
 layout(location = 5) out vec4 before;  // where it was in the frame before: pixels, window depth
 
+#ifndef SHAPES
+#define SHAPES 0
+#endif
+#if SHAPES
+in vec3 positionBefore;
+#else
+#define positionBefore worldPosition
+#endif
+
 uniform int body;
 uniform bool outlook;    // take out what the light would be if nothing hid it
 uniform float darkest;   // light that hardly shows, of this environment: not of the exposure, which may change while history is kept
@@ -107,7 +116,7 @@ void main() {
   if (outlook) takeOutOpenLight(s, a);
   albedos = packAlbedos(a);
   guide = packGuide(guideOf(s));
-  vec4 clip = clipFromWorldBefore * vec4(worldPosition, 1.0);
+  vec4 clip = clipFromWorldBefore * vec4(positionBefore, 1.0);
   vec3 window = clip.w > 0.0 ? 0.5 * clip.xyz / clip.w + 0.5 : vec3(-1.0);
   before = vec4(window.xy * size, window.z, 0.0);
   color = vec4(emission, 1.0);

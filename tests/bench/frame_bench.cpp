@@ -1,11 +1,15 @@
-/// A frame of a metal sphere: what changing materials or wetness every frame adds, and what more lobes cost. Ratios are to `nothing` and `lobes/1`.
+/// A frame of a metal sphere: what changing materials, wetness or shape every frame adds, and what more lobes cost. Ratios are to `nothing` and `lobes/1`.
 
 #include <benchmark/benchmark.h>
 
 #include <epoxy/gl.h>
 
+#include <cstdlib>
+
 #include "assets/builtin/builtin_scene.h"
 #include "assets/image/image.h"
+#include "assets/scene/load_scene.h"
+#include "assets/scene/vertex_cache.h"
 #include "runtime/environment/sg_environment.h"
 #include "runtime/gl/context.h"
 #include "runtime/render/renderer.h"
@@ -64,6 +68,29 @@ void wetness(benchmark::State& state) {
   frames(state, metal(0.4f), 0, [&](Renderer& renderer, int frame) { renderer.setWetness(maps[static_cast<std::size_t>(frame) % maps.size()]); });
 }
 
+void shape(benchmark::State& state) {
+  const Scene sphere = builtinScene("sphere");
+  std::vector<PrimitiveShape> shapes[2];
+  for (const float scale : {1.0f, 0.999f})
+    for (std::size_t p = 0; p < sphere.primitives.size(); ++p) {
+      auto& all = shapes[scale == 1.0f ? 0 : 1];
+      all.push_back({p, sphere.primitives[p].positions, sphere.primitives[p].normals});
+      for (auto& position : all.back().positions) position *= scale;
+    }
+  frames(state, metal(0.4f), 0, [&](Renderer& renderer, int frame) { renderer.setShapes(shapes[frame % 2]); });
+}
+
+/// The gallop, CHIARO_BENCH_VERTEX_FRAMES and CHIARO_BENCH_VERTEX_REST name its files: how long a frame's positions and normals take to make.
+void gallop(benchmark::State& state) {
+  const char *frames = std::getenv("CHIARO_BENCH_VERTEX_FRAMES"), *rest = std::getenv("CHIARO_BENCH_VERTEX_REST");
+  if (frames == nullptr || rest == nullptr) return state.SkipWithError("CHIARO_BENCH_VERTEX_FRAMES and CHIARO_BENCH_VERTEX_REST name no files");
+  Scene scene = loadScene(rest);
+  for (auto& primitive : scene.primitives) primitive.normals.assign(primitive.positions.size(), glm::vec3(0, 1, 0));
+  const VertexCache cache(scene, {frames, rest});
+  double t = 0.0;
+  for (auto _ : state) benchmark::DoNotOptimize(cache.at(t += 0.5));
+}
+
 void lobes(benchmark::State& state) {
   frames(state, metal(0.3f, Reflectance::beckmann), static_cast<int>(state.range(0)), [](Renderer&, int) {});
 }
@@ -76,6 +103,8 @@ void ggx(benchmark::State& state) {
 BENCHMARK(nothing)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(materials)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(wetness)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(shape)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(gallop)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(lobes)->Arg(1)->Arg(3)->Arg(5)->Arg(7)->Arg(9)->Arg(0)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(ggx)->Arg(0)->Arg(3)->Arg(6)->Unit(benchmark::kMillisecond)->UseRealTime();
 

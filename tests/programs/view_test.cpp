@@ -323,6 +323,26 @@ TEST_F(ViewPictures, SaysWhichLampsAreLeftOut) {
   EXPECT_EQ(view(drawn).err, "");
 }
 
+TEST_F(ViewPictures, AVertexCacheMovesTheMeshThatWasBaked) {
+  std::ofstream("tetra.off") << "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n";
+  const std::vector<float> frames{0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0.4f, 0, 0, 0, 0.4f, 0, 0, 0, 0.4f};
+  std::ofstream("tetra.bin", std::ios::binary).write(reinterpret_cast<const char*>(frames.data()), static_cast<std::streamsize>(frames.size() * sizeof(float)));
+  ASSERT_EQ(runProgram("chiaro-precompute", {"tetra.off", "-o", "tetra.glb", "--preset", "preview", "-q"}).code, 0);
+  const auto coverage = [](const std::string& start) {
+    const Finished run = view({"tetra.glb", "--headless", "--size", "32x32", "-e", "white", "--vertex-frames", "tetra.bin", "--vertex-rest", "tetra.off", "--start", start, "-o", "tetra.exr", "-q"});
+    EXPECT_EQ(run.code, 0) << run.err;
+    float covered = 0.0f;
+    for (const auto& texel : readExr("tetra.exr").texels) covered += texel.a;
+    return covered;
+  };
+  const float large = coverage("0"), small = coverage("0.0333333");
+  EXPECT_TRUE(small > 0.0f && small < 0.4f * large) << small << " of " << large;
+  const Finished refused = view({"tetra.glb", "--headless", "--vertex-frames", "tetra.off", "--vertex-rest", "tetra.off", "-o", "t.png"});
+  EXPECT_EQ(refused.code, 3);
+  EXPECT_EQ(refused.errorLines(), 1) << refused.err;
+  EXPECT_EQ(view({"tetra.glb", "--headless", "--vertex-frames", "tetra.bin", "-o", "t.png"}).code, 2);
+}
+
 TEST_F(ViewPictures, QuietPrintsNothing) {
   const Finished run = view({kScene, "--headless", "--size", "8x8", "-e", "white", "-o", "quiet.png", "-q"});
   EXPECT_EQ(run.code, 0);

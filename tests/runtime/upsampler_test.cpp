@@ -6,6 +6,7 @@
 #include <map>
 #include <string>
 
+#include "assets/error.h"
 #include "assets/scene/camera_spec.h"
 #include "runtime/render/renderer.h"
 #include "tests/lobe/gl_test_main.h"
@@ -360,6 +361,66 @@ TEST(Upsampler, ItsDebugViewsAreBlackWithoutIt) {
     settings.upsample = 4;
     EXPECT_TRUE(largest(frame(renderer, around(baked, 0), settings)) <= 1.0f);
   }
+}
+
+std::vector<PrimitiveShape> movedBy(const Scene& scene, glm::vec3 shift, float scale = 1.0f) {
+  std::vector<PrimitiveShape> shapes;
+  for (std::size_t p = 0; p < scene.primitives.size(); ++p) {
+    shapes.push_back({p, scene.primitives[p].positions, scene.primitives[p].normals});
+    for (auto& position : shapes.back().positions) position = scale * position + shift;
+  }
+  return shapes;
+}
+
+TEST(Shapes, AreDrawnLikeASceneThatWasBakedSo) {
+  const BakedScene baked = sphereOf(metal(0.3f));
+  const auto shapes = movedBy(baked.scene, {0.3f, 0.1f, 0.0f}, 0.5f);
+  BakedScene there = baked;
+  for (const auto& shape : shapes) there.scene.primitives[shape.primitive].positions = shape.positions;
+  Renderer renderer(baked), truth(there);
+  renderer.setEnvironment(environment("sunny"));
+  truth.setEnvironment(environment("sunny"));
+  renderer.render(around(baked, 10), smallPicture(kSize));
+  renderer.setShapes(shapes);
+  const ImageRgba picture = frame(renderer, around(baked, 10), smallPicture(kSize));
+  EXPECT_GT(largest(picture), 0.1f);
+  EXPECT_EQ(picture.texels, frame(truth, around(baked, 10), smallPicture(kSize)).texels);
+}
+
+// Vertices that all move alike are a mesh that moves, and pixels are found again as exactly.
+TEST(Shapes, AreFollowedAsMovedMeshesAre) {
+  const BakedScene baked = sphereOf(metal(0.2f));
+  Renderer shaped(baked), posed(baked), lost(baked), full(baked);
+  for (auto* renderer : {&shaped, &posed, &lost, &full}) renderer->setEnvironment(environment("windows"));
+  const Camera camera = around(baked, 0);
+  double followed = 0.0, alone = 0.0;
+  ImageRgba truth;
+  for (int f = 0; f < 12; ++f) {
+    const glm::vec3 shift(0.01f * static_cast<float>(f + 1), 0.0f, 0.0f);
+    glm::mat4 pose(1.0f);
+    pose[3] = glm::vec4(shift, 1.0f);
+    const auto shapes = movedBy(baked.scene, shift);
+    for (auto* renderer : {&shaped, &lost, &full}) renderer->setShapes(shapes);
+    posed.setPoses(std::vector<glm::mat4>(baked.scene.meshNames.size(), pose));
+    lost.setEnvironment(environment("windows"));  // no history
+    const ImageRgba a = frame(shaped, camera, upsampled(2)), b = frame(posed, camera, upsampled(2)), c = frame(lost, camera, upsampled(2));
+    truth = frame(full, camera, smallPicture(kSize));
+    EXPECT_LE(rmse(a, b), 2e-3 * largest(truth)) << "frame " << f;
+    if (f < 6) continue;
+    followed += rmse(a, truth);
+    alone += rmse(c, truth);
+  }
+  EXPECT_LT(followed, alone);
+}
+
+TEST(Shapes, RefuseOtherNumbersOfVertices) {
+  const BakedScene baked = sphereOf(matte());
+  Renderer renderer(baked);
+  auto shapes = movedBy(baked.scene, {});
+  shapes[0].normals.pop_back();
+  EXPECT_THROW(renderer.setShapes(shapes), Error);
+  shapes[0].primitive = 99;
+  EXPECT_THROW(renderer.setShapes(shapes), Error);
 }
 
 }  // namespace

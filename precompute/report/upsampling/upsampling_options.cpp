@@ -54,6 +54,9 @@ void declareUpsamplingOptions(CLI::App& app, UpsamplingOptions& options) {
   app.add_option("--turn-deg", settings.turnDegrees, "How far the camera goes around what it looks at, a frame")->type_name("A")->capture_default_str();
   auto* moving = app.add_option("--moving", settings.moving, "A mesh of the scene that turns about +Y through its middle")->type_name("MESH");
   app.add_option("--moving-deg", settings.movingDegrees, "How far it turns, a frame")->type_name("A")->capture_default_str()->needs(moving);
+  auto* frames = app.add_option("--vertex-frames", settings.shapes.frames, "Raw float32 x y z of every vertex of --vertex-rest, frame after frame: a mesh that changes shape")->type_name("FILE");
+  auto* rest = app.add_option("--vertex-rest", settings.shapes.rest, "The mesh file (.ply, .off) that was baked")->type_name("FILE")->needs(frames);
+  frames->needs(rest);
   app.add_option("--threads", settings.threads, "CPU threads, 0 is all; never changes the figures")->type_name("N")->capture_default_str();
   app.add_flag("-q,--quiet", options.quiet, "Print nothing but errors");
 }

@@ -44,6 +44,10 @@ class Path {
     const float aspect = static_cast<float>(settings.size.x) / static_cast<float>(settings.size.y);
     start_ = resolveCamera(settings.camera, scene, aspect);
     if (!settings.moving.empty()) mesh_.emplace(scene, settings.moving);
+    if (settings.shapes.frames.empty()) return;
+    shapes_.emplace(scene, settings.shapes);
+    bounds_.lower = glm::min(bounds_.lower, shapes_->bounds().lower);
+    bounds_.upper = glm::max(bounds_.upper, shapes_->bounds().upper);
   }
 
   Camera camera(int frame) const {
@@ -52,17 +56,23 @@ class Path {
     return turned;
   }
 
+  void pose(Renderer& renderer, int frame) const {
+    renderer.setPoses(poses(frame));
+    if (shapes_) renderer.setShapes(shapes_->at(frame));
+  }
+
+ private:
   std::vector<glm::mat4> poses(int frame) const {
     // Aside from where it was baked, where a pose would be no movement.
     return mesh_ ? mesh_->poses(kStartDegrees + static_cast<double>(settings_.movingDegrees) * frame) : rest_;
   }
 
- private:
   const UpsamplingSettings& settings_;
   Bounds bounds_;
   Camera start_;
   std::vector<glm::mat4> rest_;
   std::optional<MovingMesh> mesh_;
+  std::optional<VertexCache> shapes_;
 };
 
 /// Tone-mapped and encoded.
@@ -99,7 +109,7 @@ Costs draw(Renderer& renderer, const Path& path, const RenderSettings& settings,
   const double pixels = static_cast<double>(study.size.x) * study.size.y;
   for (int f = -warmUp; f < study.frames; ++f) {
     progress(static_cast<double>(f + warmUp) / (study.frames + warmUp));
-    renderer.setPoses(path.poses(f));
+    path.pose(renderer, f);
     renderer.render(path.camera(f), settings);
     if (f < 0) continue;
     take(static_cast<std::size_t>(f), shownOf(renderer.readRadiance(), settings));

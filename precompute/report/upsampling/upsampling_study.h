@@ -8,6 +8,7 @@
 
 #include "assets/image/image.h"
 #include "assets/scene/camera_spec.h"
+#include "assets/scene/vertex_cache.h"
 #include "assets/transfer/transfer.h"
 #include "runtime/render/render_settings.h"
 
@@ -40,6 +41,7 @@ struct UpsamplingSettings {
   float turnDegrees = 0.5f;    ///< of the camera about what it looks at, a frame
   std::string moving;          ///< a mesh that turns about +Y through its middle; empty: none
   float movingDegrees = 1.0f;  ///< a frame
+  VertexCacheFiles shapes;     ///< a frame of it each frame
   float recompute = 0.1f;
   int warmUp = 16;             ///< frames before the first that counts: each pixel of a cell of 4 x 4 is shaded once
   int threads = 0;

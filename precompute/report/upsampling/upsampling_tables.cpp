@@ -40,6 +40,7 @@ std::string upsamplingJson(const std::vector<MaterialResult>& results, const Ups
   json["turn_deg"] = settings.turnDegrees;
   json["moving"] = settings.moving;
   json["moving_deg"] = settings.movingDegrees;
+  json["vertex_frames"] = settings.shapes.frames.string();
   json["recompute_share"] = settings.recompute;
   json["materials"] = nlohmann::ordered_json::array();
   for (const auto& material : results) {
