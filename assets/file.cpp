@@ -4,6 +4,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -156,6 +158,12 @@ bool isSameFile(const std::filesystem::path& a, const std::filesystem::path& b) 
   const auto canonicalA = std::filesystem::weakly_canonical(std::filesystem::absolute(a, error), error);
   const auto canonicalB = std::filesystem::weakly_canonical(std::filesystem::absolute(b, error), error);
   return !canonicalA.empty() && canonicalA == canonicalB;
+}
+
+std::string lowerCaseExtension(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
 }
 
 }  // namespace chiaro

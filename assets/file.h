@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -25,5 +26,8 @@ void requireWritable(const std::filesystem::path& path);
 
 /// Whether both paths lead to one file, however they are spelt and through whatever links. Neither needs to exist.
 bool isSameFile(const std::filesystem::path& a, const std::filesystem::path& b);
+
+/// With its dot, ".glb" of "A.GLB"; empty without one.
+std::string lowerCaseExtension(const std::filesystem::path& path);
 
 }  // namespace chiaro

@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "assets/error.h"
+#include "assets/image/image.h"
 #include "shaders/cpp/lobe.h"
 
 namespace chiaro {
@@ -29,7 +30,6 @@ double smooth(double low, double high, double x) {
   return t * t * (3.0 - 2.0 * t);
 }
 
-double luminance(glm::dvec3 c) { return glm::dot(c, glm::dvec3(0.2126, 0.7152, 0.0722)); }
 
 /// Steradians of one texel of a row.
 double texelSolidAngle(int row, int width, int height) {

@@ -10,12 +10,6 @@
 namespace chiaro {
 namespace {
 
-bool hasExtension(const std::filesystem::path& path, const char* extension) {
-  std::string found = path.extension().string();
-  std::transform(found.begin(), found.end(), found.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return found == extension;
-}
-
 void requireRadiance(const ImageRgb& image, const std::string& where) {
   for (std::size_t i = 0; i < image.texels.size(); ++i) {
     const glm::vec3& t = image.texels[i];
@@ -45,8 +39,9 @@ ImageRgb radianceOf(const ExrImage& exr, const std::string& where) {
 }  // namespace
 
 ImageRgb readHdrImage(const std::filesystem::path& path) {
-  const bool exr = hasExtension(path, ".exr");
-  if (!exr && !hasExtension(path, ".hdr"))
+  const std::string extension = lowerCaseExtension(path);
+  const bool exr = extension == ".exr";
+  if (!exr && extension != ".hdr")
     throw inputError(path.string(), "is neither .hdr nor .exr", "convert it to one of them");
   const auto bytes = readFile(path);
   return exr ? radianceOf(decodeExr(bytes, path.string()), path.string()) : decodeRadianceHdr(bytes, path.string());

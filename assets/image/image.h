@@ -21,6 +21,9 @@ struct ImageRgb {
   glm::vec3& at(int x, int y) { return texels[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)]; }
 };
 
+/// Rec.709, of a linear colour.
+inline double luminance(const glm::dvec3& c) { return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z; }
+
 /// The same with coverage (1 where an object is seen); colour is not premultiplied unless said.
 struct ImageRgba {
   int width = 0;

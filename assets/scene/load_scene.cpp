@@ -1,7 +1,5 @@
 #include "assets/scene/load_scene.h"
 
-#include <algorithm>
-#include <cctype>
 #include <new>
 #include <stdexcept>
 
@@ -13,13 +11,6 @@
 
 namespace chiaro {
 namespace {
-
-std::string lowerCaseExtension(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
-}
 
 Scene load(const std::filesystem::path& path, const WarningHandler& warn) {
   std::error_code ignored;

@@ -53,10 +53,7 @@ glm::mat2 TextureTransform::linear() const {
 Bounds boundsOf(const Scene& scene) {
   Bounds bounds;
   for (const auto& primitive : scene.primitives) {
-    for (const auto index : primitive.indices) {
-      bounds.lower = glm::min(bounds.lower, primitive.positions[index]);
-      bounds.upper = glm::max(bounds.upper, primitive.positions[index]);
-    }
+    for (const auto index : primitive.indices) bounds.include(primitive.positions[index]);
   }
   return bounds;
 }

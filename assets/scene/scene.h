@@ -183,6 +183,7 @@ struct Bounds {
   glm::vec3 upper{-std::numeric_limits<float>::infinity()};
 
   bool empty() const { return !(lower.x <= upper.x); }
+  void include(glm::vec3 p) { lower = glm::min(lower, p), upper = glm::max(upper, p); }
   glm::vec3 center() const { return 0.5f * (lower + upper); }
   float diagonal() const { return empty() ? 0.0f : glm::length(upper - lower); }
 };

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cctype>
 #include <cmath>
 #include <cstring>
 #include <map>
@@ -12,6 +11,7 @@
 #include "assets/error.h"
 #include "assets/file.h"
 #include "assets/scene/load_scene.h"
+#include "assets/scene/triangle.h"
 
 namespace chiaro {
 namespace {
@@ -30,8 +30,7 @@ VertexCache::VertexCache(const Scene& scene, const VertexCacheFiles& files) {
 }
 
 void VertexCache::readRest(const std::filesystem::path& file) {
-  std::string kind = file.extension().string();
-  std::transform(kind.begin(), kind.end(), kind.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string kind = lowerCaseExtension(file);
   if (kind != ".ply" && kind != ".off") throw inputError(file.string(), "keeps no order of vertices when it is read", "give a .ply or .off file");
   const Scene mesh = loadScene(file);
   if (mesh.primitives.size() != 1)
@@ -52,8 +51,7 @@ void VertexCache::readFrames(const std::filesystem::path& file) {
     for (int c = 0; c < 3; ++c)
       if (!std::isfinite(frames_[i][c]))
         throw inputError(file.string(), "vertex " + std::to_string(i % rest_.size()) + " of frame " + std::to_string(i / rest_.size()) + " is not finite", "write it again");
-    bounds_.lower = glm::min(bounds_.lower, frames_[i]);
-    bounds_.upper = glm::max(bounds_.upper, frames_[i]);
+    bounds_.include(frames_[i]);
   }
 }
 
@@ -82,14 +80,9 @@ void VertexCache::find(const Scene& scene, const std::string& where) {
 std::vector<glm::vec3> VertexCache::normalsOf(const Part& part, const std::vector<glm::vec3>& positions) {
   std::vector<glm::dvec3> sums(positions.size(), glm::dvec3(0.0));
   for (std::size_t i = 0; i + 2 < part.indices.size(); i += 3) {
-    const std::array<glm::dvec3, 3> corner{positions[part.indices[i]], positions[part.indices[i + 1]], positions[part.indices[i + 2]]};
-    const glm::dvec3 area = glm::cross(corner[1] - corner[0], corner[2] - corner[0]);
-    const double size = glm::length(area);
-    if (!(size > 0.0)) continue;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const double cosine = glm::dot(corner[(k + 1) % 3] - corner[k], corner[(k + 2) % 3] - corner[k]);  // times both lengths, as `size` is the sine times both
-      sums[part.smooth[part.indices[i + k]]] += area * (std::atan2(size, cosine) / size);
-    }
+    const auto at = [&](std::size_t k) { return positions[part.indices[i + k % 3]]; };
+    const glm::dvec3 normal = triangleNormal(at(0), at(1), at(2));
+    for (std::size_t k = 0; k < 3; ++k) sums[part.smooth[part.indices[i + k]]] += normal * cornerAngle(at(k), at(k + 1), at(k + 2));
   }
   std::vector<glm::vec3> normals;
   for (const std::uint32_t first : part.smooth) {

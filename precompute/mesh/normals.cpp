@@ -56,18 +56,6 @@ glm::vec3 unitOr(glm::dvec3 sum, glm::dvec3 fallback) {
 
 }  // namespace
 
-glm::dvec3 triangleNormal(glm::vec3 a, glm::vec3 b, glm::vec3 c) {
-  const glm::dvec3 p(a);
-  const auto n = glm::cross(glm::dvec3(b) - p, glm::dvec3(c) - p);
-  const double length = glm::length(n);
-  return length > 0.0 ? n / length : glm::dvec3(0.0);
-}
-
-double cornerAngle(glm::vec3 a, glm::vec3 b, glm::vec3 c) {
-  const auto u = glm::dvec3(b) - glm::dvec3(a), v = glm::dvec3(c) - glm::dvec3(a);
-  return std::atan2(glm::length(glm::cross(u, v)), glm::dot(u, v));
-}
-
 void computeNormals(Primitive& primitive, const HalfEdges& edges, float creaseAngle, RepairReport& report) {
   const auto faceNormal = triangleNormals(primitive);
   const auto& mesh = edges.mesh;

@@ -2,16 +2,11 @@
 /// Vertex normals: made where the file has none, mended where it has bad ones.
 
 #include "assets/scene/scene.h"
+#include "assets/scene/triangle.h"
 #include "precompute/bake.h"
 #include "precompute/mesh/half_edge.h"
 
 namespace chiaro {
-
-/// Unit normal of a triangle; zero when it has no area.
-glm::dvec3 triangleNormal(glm::vec3 a, glm::vec3 b, glm::vec3 c);
-
-/// Angle (radians) of triangle (a, b, c) at a.
-double cornerAngle(glm::vec3 a, glm::vec3 b, glm::vec3 c);
 
 /// For a primitive without normals. Corners of one vertex that are joined across edges bent by at most `creaseAngle`
 /// (radians) share a normal: the mean of their triangles' normals weighted by the corners' angles (Thuermer and Wuethrich 1998).

@@ -25,7 +25,6 @@ constexpr int kSeedsPerLight = 4;
 constexpr double kShadowSharpness = 500.0;
 constexpr double kTwinLoss = 0.03;  ///< likelihood a flux (nats) under which two lobes are one light
 
-double luminance(const glm::dvec3& c) { return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z; }
 
 glm::dvec3 directionOf(double x, double y, const ImageRgb& map) {
   return lobe64::directionFromEquirect({x / map.width, y / map.height});

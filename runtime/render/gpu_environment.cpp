@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "assets/error.h"
+#include "assets/image/image.h"
 #include "shaders/cpp/lobe.h"
 
 namespace chiaro {
@@ -79,7 +80,7 @@ GpuEnvironment::GpuEnvironment(const SgEnvironment& environment) {
   bytes_ += map.texels.size() * sizeof(glm::vec3);
 
   restRadianceSh_ = projectSh(map);
-  meanRadiance_ = glm::dot(restRadianceSh_[0], glm::vec3(0.2126f, 0.7152f, 0.0722f)) / std::sqrt(4.0f * lobe32::kPi);  // the constant harmonic is 1 / sqrt(4 pi)
+  meanRadiance_ = static_cast<float>(luminance(restRadianceSh_[0]) / std::sqrt(4.0 * lobe64::kPi));  // the constant harmonic is 1 / sqrt(4 pi)
   for (const auto& light : source_.lights) {
     const auto scales = bandScales(light.sharpness);
     float basis[25];

@@ -62,14 +62,12 @@ void GpuScene::uploadGeometry(const Scene& scene) {
       const glm::vec2 uv = primitive.texcoords.empty() ? glm::vec2(0) : primitive.texcoords[v];
       vertices.push_back({glm::vec4(primitive.positions[v], uv.x), glm::vec4(primitive.normals[v], uv.y),
                           primitive.tangents.empty() ? glm::vec4(0) : primitive.tangents[v]});
-      bounds.lower = glm::min(bounds.lower, primitive.positions[v]);
-      bounds.upper = glm::max(bounds.upper, primitive.positions[v]);
+      bounds.include(primitive.positions[v]);
     }
     for (const auto index : primitive.indices) indices.push_back(base + index);
     draw.center = bounds.empty() ? glm::vec3(0) : bounds.center();
-    primitiveDraws_.push_back(draws_.size());
+    primitiveDraws_.push_back(draw.indexCount > 0 ? draws_.size() : kNoDraw);
     if (draw.indexCount > 0) draws_.push_back(draw);
-    else primitiveDraws_.back() = kNoDraw;
   }
   if (indices.empty()) throw inputError("scene", "has no triangle", "choose another file");
   requireStorage(vertices.size() * sizeof(VertexBlock), "vertices");
@@ -133,8 +131,7 @@ void GpuScene::setShape(std::size_t primitive, std::span<const glm::vec3> positi
   for (std::size_t v = 0; v < draw.vertexCount; ++v) {
     shape.vertices[v].positionU = glm::vec4(positions[v], shape.vertices[v].positionU.w);
     shape.vertices[v].normalV = glm::vec4(normals[v], shape.vertices[v].normalV.w);
-    bounds.lower = glm::min(bounds.lower, positions[v]);
-    bounds.upper = glm::max(bounds.upper, positions[v]);
+    bounds.include(positions[v]);
   }
   draw.center = bounds.center();
   shape.moved = true;
@@ -149,12 +146,6 @@ void GpuScene::keepShapes() {
     before_.write(draws_[primitiveDraws_[primitive]].firstVertex * sizeof(glm::vec4), std::span<const glm::vec4>(positions));
     shape.moved = false;
   }
-}
-
-MaterialFeatures GpuScene::features() const {
-  MaterialFeatures all = features_;
-  all.shapes = static_cast<bool>(before_);
-  return all;
 }
 
 void GpuScene::setMaterials(const std::vector<Material>& materials) {

@@ -43,7 +43,9 @@ class GpuScene {
 
   const std::vector<GpuDraw>& draws() const { return draws_; }
   const Material& material(int index) const { return materials_[static_cast<std::size_t>(index)]; }
-  MaterialFeatures features() const;
+  const MaterialFeatures& features() const { return features_; }
+  /// Vertices have a place in the frame before of their own, since setShape() was called.
+  bool hasShapes() const { return static_cast<bool>(before_); }
   const GpuTransfer& transfer() const { return transfer_; }
   float directionSharpness() const { return directionSharpness_; }
   const std::vector<glm::vec3>& directions() const { return directions_; }

@@ -23,7 +23,7 @@ std::vector<std::string> MaterialFeatures::defines(int layersEach) const {
   }
   std::string list;
   for (const int layer : layers) list += (list.empty() ? "" : ", ") + std::to_string(layer);
-  return {"REFLECTANCE_MODELS " + std::to_string(models != 0), "MODEL_LAYERS int[](" + list + ")", "CLEARCOAT " + std::to_string(coat), "SHEEN " + std::to_string(sheen), "WETNESS " + std::to_string(wetness), "SHAPES " + std::to_string(shapes),
+  return {"REFLECTANCE_MODELS " + std::to_string(models != 0), "MODEL_LAYERS int[](" + list + ")", "CLEARCOAT " + std::to_string(coat), "SHEEN " + std::to_string(sheen), "WETNESS " + std::to_string(wetness),
           "MATERIAL_TEXTURES " + std::to_string(layerTextures ? kMaterialTextures : kCommonTextures)};
 }
 
@@ -41,7 +41,7 @@ MaterialFeatures featuresOf(const std::vector<Material>& materials) {
 }
 
 MaterialFeatures merged(const MaterialFeatures& a, const MaterialFeatures& b) {
-  return {a.models | b.models, a.coat || b.coat, a.sheen || b.sheen, a.wetness || b.wetness, a.shapes || b.shapes, a.layerTextures || b.layerTextures};
+  return {a.models | b.models, a.coat || b.coat, a.sheen || b.sheen, a.wetness || b.wetness, a.layerTextures || b.layerTextures};
 }
 
 int lobeKindOf(Reflectance model) {

@@ -13,7 +13,6 @@ struct MaterialFeatures {
   bool coat = false;
   bool sheen = false;
   bool wetness = false;        ///< Renderer::setWetness(); no material asks for it
-  bool shapes = false;         ///< Renderer::setShapes(), likewise
   bool layerTextures = false;  ///< of KHR_materials_specular, _clearcoat and _sheen
 
   bool operator==(const MaterialFeatures&) const = default;

@@ -24,15 +24,13 @@ unsigned PixelBudget::pixelsFor(double milliseconds, double pixelsOfFrame) {
   const double first = std::max(kFirstShare * pixelsOfFrame, 2.0 * kFewPixels);
   const double most = std::max(first, 2.0 * measured_);
   const double fit = secondsPerPixel_ > 0.0 ? 1e-3 * milliseconds / secondsPerPixel_ : first;
-  allowed_ = static_cast<unsigned>(std::min({fit, most, pixelsOfFrame}));
-  return allowed_;
+  return frames_[next_].allowed = static_cast<unsigned>(std::min({fit, most, pixelsOfFrame}));
 }
 
 void PixelBudget::end(const gl::Buffer& shaded, std::size_t offset) {
   Frame& frame = frames_[next_];
   frame.timer.end();
   glCopyNamedBufferSubData(shaded.id(), frame.listed.id(), static_cast<GLintptr>(offset), 0, sizeof(std::uint32_t));
-  frame.allowed = allowed_;
   frame.pending = true;
   next_ = (next_ + 1) % frames_.size();
 }

@@ -29,7 +29,7 @@ class PixelBudget {
 
   std::array<Frame, 4> frames_;  // more than drivers keep in flight
   std::size_t next_ = 0;
-  unsigned allowed_ = 0, measured_ = 0;  // `measured_`: the most that a measurement has vouched for
+  unsigned measured_ = 0;  // pixels of the last measurement
   double secondsPerPixel_ = 0.0;
 };
 

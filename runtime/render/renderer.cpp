@@ -78,7 +78,7 @@ struct Renderer::Impl {
   glm::vec4 wetnessS{0.0f}, wetnessT{0.0f};
   std::optional<MaterialFeatures> built;  // what the programs and modelTable are for
   int builtLobes = 0;
-  bool builtUpsampler = false;
+  bool builtUpsampler = false, builtShapes = false;  // the latter: for those, which upsampling alone knows
   gl::Program tapeProgram;           // made when first asked for
   std::optional<TapeMode> tapeMode;  // while a frame is recorded or replayed
   gl::Buffer tape, tapeStarts;
@@ -132,14 +132,16 @@ struct Renderer::Impl {
   void build(const RenderSettings& settings) {
     const MaterialFeatures features = this->features();
     const bool same = built == features && builtLobes == settings.lobes;
-    if (same && (!upsamples(settings) || builtUpsampler)) return;
+    const bool upsamplerReady = builtUpsampler && builtShapes == scene.hasShapes();
+    if (same && (!upsamples(settings) || upsamplerReady)) return;
     auto defines = features.defines(kReflectanceLayers);
     if (!same) buildForward(features, settings.lobes, defines);
     builtUpsampler = upsamples(settings);
     if (!builtUpsampler) return;
     if (!upsampler) upsampler = std::make_unique<Upsampler>();
     for (auto& define : shadingDefines(settings.lobes)) defines.push_back(std::move(define));
-    upsampler->build(defines);
+    builtShapes = scene.hasShapes();
+    upsampler->build(defines, builtShapes);
   }
 
   std::vector<std::string> shadingDefines(int lobes) const {

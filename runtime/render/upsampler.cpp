@@ -52,8 +52,10 @@ Upsampler::Upsampler()
       composeProgram_(pass("shaders/stage/upsample_compose.frag")),
       urgencies_(kUrgencyBytes) {}
 
-void Upsampler::build(const std::vector<std::string>& defines) {
-  surfaceProgram_ = gl::Program::load({{GL_VERTEX_SHADER, "shaders/stage/mesh.vert"}, {GL_FRAGMENT_SHADER, "shaders/stage/upsample_surface.frag"}}, defines);
+void Upsampler::build(const std::vector<std::string>& defines, bool shapes) {
+  auto surfaceDefines = defines;
+  surfaceDefines.push_back("SHAPES " + std::to_string(shapes));
+  surfaceProgram_ = gl::Program::load({{GL_VERTEX_SHADER, "shaders/stage/mesh.vert"}, {GL_FRAGMENT_SHADER, "shaders/stage/upsample_surface.frag"}}, surfaceDefines);
   shadeProgram_ = pass("shaders/stage/upsample_shade.frag", defines);
   auto recomputeDefines = defines;
   recomputeDefines.push_back("RECOMPUTE");
@@ -225,7 +227,7 @@ void Upsampler::compose() {
 std::pair<unsigned, unsigned> Upsampler::recomputed() const {
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
   const auto words = urgencies_.read<std::uint32_t>();
-  return {words[67], std::min(words[64], budget_)};
+  return {words[67], std::min(words[kListedOffset / sizeof(std::uint32_t)], budget_)};
 }
 
 std::size_t Upsampler::bytes() const {

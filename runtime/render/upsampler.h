@@ -2,6 +2,7 @@
 /// Shades one pixel of each cell of n by n and makes the rest of them: a joint filter over place, depth, lobes and time (Herzog et al. 2010; Tokuyoshi
 /// 2015), and shading of the pixels that it fails. Owned by a Renderer, which draws the geometry and binds what shading reads.
 
+#include <cstdint>
 #include <functional>
 #include <glm/glm.hpp>
 #include <string>
@@ -20,8 +21,8 @@ class Upsampler {
  public:
   Upsampler();
 
-  /// The programs that shade, with what the scene asks of them.
-  void build(const std::vector<std::string>& defines);
+  /// The programs that shade, with what the scene asks of them; `shapes`: vertices have places in the frame before of their own.
+  void build(const std::vector<std::string>& defines, bool shapes);
 
   /// Before anything else of a frame: targets of this size, history where the last frame left any. `color` and `depth` are the renderer's own
   /// and must live until the frame is done.
@@ -42,7 +43,7 @@ class Upsampler {
   void recompute(int bodies, const std::function<void(int)>& bindBody, unsigned pixels);
   /// Holds how many pixels were listed for it, a 32 bit word at kListedOffset.
   const gl::Buffer& listed() const { return urgencies_; }
-  static constexpr std::size_t kListedOffset = 64 * 4;  // shaders/stage/upsample_list.glsl
+  static constexpr std::size_t kListedOffset = 64 * sizeof(std::uint32_t);  // shaders/stage/upsample_list.glsl
 
   /// Adds the light to `color`, or puts a debug view there. Ends the frame.
   void compose();

@@ -1,11 +1,10 @@
 #include "runtime/viewer/view_inputs.h"
 
-#include <algorithm>
-#include <cctype>
 #include <chrono>
 #include <cstdio>
 
 #include "assets/builtin/environment.h"
+#include "assets/file.h"
 #include "runtime/render/renderer.h"
 
 namespace chiaro {
@@ -48,8 +47,7 @@ PreparedEnvironment prepareForView(const std::string& nameOrPath, int prefilter,
 }
 
 DroppedKind droppedKind(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string extension = lowerCaseExtension(path);
   if (extension == ".glb") return DroppedKind::scene;
   if (extension == ".hdr" || extension == ".exr") return DroppedKind::environment;
   return DroppedKind::other;

@@ -24,12 +24,6 @@ std::string joined(const std::vector<std::string>& names) {
   return text;
 }
 
-std::string lowerExtension(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
-}
-
 std::optional<int> wholeNumber(std::string_view text) {
   int value = 0;
   const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -201,7 +195,7 @@ DebugView debugViewFromName(const std::string& name) {
 }
 
 PictureFormat pictureFormat(const std::filesystem::path& path, const std::string& option) {
-  const std::string extension = lowerExtension(path);
+  const std::string extension = lowerCaseExtension(path);
   if (extension == ".png") return PictureFormat::png;
   if (extension == ".exr") return PictureFormat::exr;
   throw usageError(option, "\"" + path.string() + "\" is neither a .png nor an .exr name", "end the name in .png or .exr");

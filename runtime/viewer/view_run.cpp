@@ -8,7 +8,7 @@
 
 #include "assets/file.h"
 #include "runtime/gl/context.h"
-#include "runtime/viewer/frame_statistics.h"
+#include "runtime/render/frame_statistics.h"
 
 namespace chiaro {
 namespace {
@@ -118,7 +118,7 @@ void runFrames(const ViewOptions& options, const LoadedScene& scene, const Camer
   Animator animator(scene.baked.scene, options.animation, options.moving, options.shapes);
   for (int frame = -warmUp; frame < options.frames; ++frame) {
     if (frame == 0) start = secondsNow();
-    animator.apply(renderer, options.startSeconds + (settings.upsample > 1 ? frame : std::max(frame, 0)) / 60.0);
+    animator.apply(renderer, options.startSeconds + frame / 60.0);
     renderer.render(camera, settings);
     if (frame >= 0) timings.push_back(renderer.timings());
     if (afterFrame) afterFrame(renderer, frame);

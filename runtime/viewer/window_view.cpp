@@ -225,8 +225,9 @@ class InteractiveView {
     const bool whole = state_.continuous || saveWanted_;
     if (changed) changedAt_ = secondsNow();
     const bool rested = secondsNow() - changedAt_ > kRestSeconds;
-    if (changed || (coarse_ && (rested || whole))) settledFrames_ = 0;
-    if (!state_.continuous && !changed && !settling() && !(coarse_ && (rested || whole))) return;
+    const bool previewEnds = coarse_ && (rested || whole);
+    if (changed || previewEnds) settledFrames_ = 0;
+    if (!state_.continuous && !changed && !settling() && !previewEnds) return;
     ++settledFrames_;
 
     const RenderSettings settings = changed && !whole ? previewSettings(wanted, millisecondsPerSample_) : wanted;

@@ -17,9 +17,6 @@ layout(location = 3) out uvec4 albedos;
 layout(location = 4) out uvec4 guide;
 layout(location = 5) out vec4 before;  // where it was in the frame before: pixels, window depth
 
-#ifndef SHAPES
-#define SHAPES 0
-#endif
 #if SHAPES
 in vec3 positionBefore;
 #else

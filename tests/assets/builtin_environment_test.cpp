@@ -14,7 +14,6 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-double luminance(glm::dvec3 c) { return glm::dot(c, glm::dvec3(0.2126, 0.7152, 0.0722)); }
 
 /// Sum over texels of weight(direction) * luminance * solid angle.
 template <class Weight>

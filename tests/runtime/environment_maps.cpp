@@ -79,7 +79,6 @@ Environment windowedRoom(int width) {
   });
 }
 
-double luminance(const glm::dvec3& c) { return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z; }
 
 double texelSolidAngle(const ImageRgb& map, int row) {
   return 2 * kPi / map.width * (std::cos(kPi * row / map.height) - std::cos(kPi * (row + 1) / map.height));

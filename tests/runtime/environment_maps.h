@@ -19,7 +19,6 @@ Environment discOnSky(int width, glm::dvec3 axis, double angularRadius, double d
 /// A dark room with four bright rectangular windows.
 Environment windowedRoom(int width);
 
-double luminance(const glm::dvec3& c);
 /// Solid angle of a texel of this row.
 double texelSolidAngle(const ImageRgb& map, int row);
 /// Integral of radiance over the sphere.

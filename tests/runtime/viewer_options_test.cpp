@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "assets/error.h"
-#include "runtime/viewer/frame_statistics.h"
+#include "runtime/render/frame_statistics.h"
 #include "runtime/viewer/panel.h"
 #include "runtime/viewer/preview.h"
 #include "runtime/viewer/view_inputs.h"

@@ -117,10 +117,7 @@ Plane normalisedLuminance(Plane y) {
   return y;
 }
 
-double luminanceOf(const glm::vec3& radiance) {
-  const glm::dvec3 c = glm::max(glm::dvec3(radiance), glm::dvec3(0.0));
-  return 0.2126 * c.r + 0.7152 * c.g + 0.0722 * c.b;
-}
+double luminanceOf(const glm::vec3& radiance) { return luminance(glm::max(glm::dvec3(radiance), glm::dvec3(0.0))); }
 
 // (k0 x^2 + k1 x) / (k3 x^2 + k4 x + k5): Narkowicz's fit of ACES with his exposure of .6 inside.
 constexpr double kK0 = 0.6 * 0.6 * 2.51, kK1 = 0.6 * 0.03, kK3 = 0.6 * 0.6 * 2.43, kK4 = 0.6 * 0.59, kK5 = 0.14;

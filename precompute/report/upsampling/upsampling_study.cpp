@@ -14,6 +14,7 @@
 #include "precompute/report/metrics/flip.h"
 #include "precompute/report/metrics/rmse.h"
 #include "runtime/environment/sg_environment.h"
+#include "runtime/render/frame_statistics.h"
 #include "runtime/render/renderer.h"
 
 namespace chiaro {
@@ -46,8 +47,8 @@ class Path {
     if (!settings.moving.empty()) mesh_.emplace(scene, settings.moving);
     if (settings.shapes.frames.empty()) return;
     shapes_.emplace(scene, settings.shapes);
-    bounds_.lower = glm::min(bounds_.lower, shapes_->bounds().lower);
-    bounds_.upper = glm::max(bounds_.upper, shapes_->bounds().upper);
+    bounds_.include(shapes_->bounds().lower);
+    bounds_.include(shapes_->bounds().upper);
   }
 
   Camera camera(int frame) const {
@@ -90,16 +91,17 @@ Shown shownOf(const ImageRgba& radiance, const RenderSettings& settings) {
   return shown;
 }
 
-double median(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  std::sort(values.begin(), values.end());
-  const std::size_t half = values.size() / 2;
-  return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
-}
-
 struct Costs {
-  std::vector<double> milliseconds, filterMilliseconds, recomputed;
+  std::vector<FrameTimings> timings;
+  std::vector<double> recomputed;  // share of all pixels
 };
+
+/// GPU milliseconds; 0 for a pass that no frame has.
+double medianOf(const Costs& costs, const std::string& pass) {
+  for (const auto& one : passStatistics(costs.timings))
+    if (one.name == pass) return one.median;
+  return 0.0;
+}
 
 /// Draws the frames that do not count and those that do, and hands out the latter as they come.
 Costs draw(Renderer& renderer, const Path& path, const RenderSettings& settings, const UpsamplingSettings& study, const std::function<void(double)>& progress,
@@ -113,10 +115,7 @@ Costs draw(Renderer& renderer, const Path& path, const RenderSettings& settings,
     renderer.render(path.camera(f), settings);
     if (f < 0) continue;
     take(static_cast<std::size_t>(f), shownOf(renderer.readRadiance(), settings));
-    const FrameTimings timings = renderer.timings();
-    costs.milliseconds.push_back(timings.passes.back().second);
-    for (const auto& [name, milliseconds] : timings.passes)
-      if (name == "upsample") costs.filterMilliseconds.push_back(milliseconds);
+    costs.timings.push_back(renderer.timings());
     costs.recomputed.push_back(renderer.recomputed().second / pixels);
   }
   return costs;
@@ -159,8 +158,8 @@ class Comparison {
     }
     for (const double share : costs.recomputed) result.recomputed += share / frames;
     result.recomputedOfObjects = result.recomputed * all / std::max(covered, 1.0);
-    result.milliseconds = median(costs.milliseconds);
-    result.filterMilliseconds = median(costs.filterMilliseconds);
+    result.milliseconds = medianOf(costs, "total");
+    result.filterMilliseconds = medianOf(costs, "upsample");
     return result;
   }
 
@@ -239,7 +238,7 @@ std::vector<MaterialResult> studyUpsampling(const BakedScene& baked, const Upsam
     std::vector<Shown> full;
     const Costs fullCosts = draw(renderer, path, settings, study, report("full"), [&](std::size_t, Shown shown) { full.push_back(std::move(shown)); });
     show("full", settings);
-    MaterialResult result{material, median(fullCosts.milliseconds), {}};
+    MaterialResult result{material, medianOf(fullCosts, "total"), {}};
     for (const auto& variant : variants) {
       RenderSettings upsampled = settings;
       upsampled.upsample = study.upsample;

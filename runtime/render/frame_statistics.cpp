@@ -1,4 +1,4 @@
-#include "runtime/viewer/frame_statistics.h"
+#include "runtime/render/frame_statistics.h"
 
 #include <algorithm>
 
