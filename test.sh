@@ -7,7 +7,7 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
 preset=${CHIARO_PRESET:-release}
 
-scripts/setup.sh
+scripts/setup.sh --tests
 cmake --preset "$preset"
 cmake --build --preset "$preset"
 

@@ -1,6 +1,7 @@
 #!/bin/sh
 # Installs what building, testing and running chiaro needs, from Debian's own packages (Debian 12 and 13).
-# Does nothing when everything is there. --list prints the packages; --check only says what is missing (exit 1).
+# Does nothing when everything is there. --tests: what only tests need as well (a browser for the reports' pages).
+# --list prints the packages; --check only says what is missing (exit 1).
 set -eu
 
 packages="
@@ -15,12 +16,18 @@ packages="
   xvfb xauth
 "
 
+test_packages="chromium"
+
 say() { printf 'setup: %s\n' "$*" >&2; }
 
+if [ "${1:-}" = --tests ]; then
+  packages="$packages $test_packages"
+  shift
+fi
 case "${1:-}" in
   --list) printf '%s\n' $packages; exit 0 ;;
   --check | "") ;;
-  *) say "$1: unknown option: expected --list, --check or nothing"; exit 2 ;;
+  *) say "$1: unknown option: expected [--tests] and --list, --check or nothing"; exit 2 ;;
 esac
 
 if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
