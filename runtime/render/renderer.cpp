@@ -407,14 +407,15 @@ struct Renderer::Impl {
     });
     glDepthMask(GL_FALSE);
     dataPass();
-    timed(1, "coarse shade", [&] { upsampler->shade(count, bind); });
-    timed(2, "upsample", [&] { upsampler->filter(); });
-    timed(3, "recompute", [&] { recompute(settings, count, bind); });
-    timed(4, "compose", [&] { upsampler->compose(); });
+    timed(1, "estimate", [&] { upsampler->estimate(count, bind, shaded->depth); });
+    timed(2, "coarse shade", [&] { upsampler->shade(count, bind); });
+    timed(3, "upsample", [&] { upsampler->filter(); });
+    timed(4, "recompute", [&] { recompute(settings, count, bind); });
+    timed(5, "compose", [&] { upsampler->compose(); });
     bindBody(0);
     shaded->framebuffer.bind();
     glEnable(GL_DEPTH_TEST);
-    return 5;
+    return 6;
   }
 
   void render(const Camera& camera, const RenderSettings& settings) {

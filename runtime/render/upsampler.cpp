@@ -56,6 +56,7 @@ void Upsampler::build(const std::vector<std::string>& defines, bool shapes) {
   auto surfaceDefines = defines;
   surfaceDefines.push_back("SHAPES " + std::to_string(shapes));
   surfaceProgram_ = gl::Program::load({{GL_VERTEX_SHADER, "shaders/stage/mesh.vert"}, {GL_FRAGMENT_SHADER, "shaders/stage/upsample_surface.frag"}}, surfaceDefines);
+  estimateProgram_ = pass("shaders/stage/upsample_estimate.frag", defines);
   shadeProgram_ = pass("shaders/stage/upsample_shade.frag", defines);
   auto recomputeDefines = defines;
   recomputeDefines.push_back("RECOMPUTE");
@@ -68,8 +69,9 @@ void Upsampler::allocate(glm::ivec2 size, int cell) {
   const auto make = [](GLenum format, glm::ivec2 of) { return gl::Texture::make2d(format, of.x, of.y); };
   if (size != size_) {
     size_ = size;
-    for (auto* texture : {&place_, &colors_, &albedos_, &guide_}) *texture = make(GL_RGBA32UI, size);
-    before_ = make(GL_RGBA32F, size);
+    for (auto* texture : {&place_, &colors_, &before_, &albedos_, &guide_}) *texture = make(GL_RGBA32UI, size);
+    body_ = make(GL_R8UI, size);
+    estimated_ = gl::Framebuffer::make({&albedos_, &guide_});
     quality_ = make(GL_RGBA16F, size);
     for (int k = 0; k < 2; ++k) {
       kept_[k] = {make(GL_RGBA32F, size), make(GL_RGBA32F, size), make(GL_RGBA32UI, size)};
@@ -93,7 +95,7 @@ void Upsampler::begin(const gl::Texture& color, const gl::Texture& depth, const 
   if (!shadeAlike(settings, settings_)) forget();
   settings_ = settings;
   darkest_ = std::max(kDarkestShare * meanRadiance, 1e-20f);
-  surfaces_ = gl::Framebuffer::make({&color, &place_, &colors_, &albedos_, &guide_, &before_}, &depth);
+  surfaces_ = gl::Framebuffer::make({&color, &place_, &colors_, &before_, &body_}, &depth);
   composed_ = gl::Framebuffer::make({&color});
   depthScaleBefore_ = depthScale_;
   depthScale_ = depthScaleOf(camera, size_.y);
@@ -104,12 +106,10 @@ void Upsampler::begin(const gl::Texture& color, const gl::Texture& depth, const 
 
 void Upsampler::bindSurfaces() const {
   surfaces_.bind();
-  const GLuint nothing[4] = {0x3f800000u, 0, 0, 0};  // depth 1, shaders/stage/upsample_guide.glsl
-  for (int attachment = 1; attachment <= 4; ++attachment) glClearNamedFramebufferuiv(surfaces_.id(), GL_COLOR, attachment, nothing);
+  const GLuint nobody[4] = {255, 0, 0, 0};  // shaders/stage/upsample_guide.glsl
+  glClearNamedFramebufferuiv(surfaces_.id(), GL_COLOR, 4, nobody);
   surfaceProgram_.set("size", glm::vec2(size_));
   surfaceProgram_.set("depthScale", depthScale_);
-  surfaceProgram_.set("outlook", settings_.upsampleWeights == UpsampleWeights::lobe ? 1 : 0);
-  surfaceProgram_.set("darkest", darkest_);
 }
 
 void Upsampler::setBody(int body, const glm::mat4& clipFromWorldBefore) const {
@@ -125,6 +125,22 @@ void Upsampler::setHistory(const gl::Program& program) const {
   program.set("historyHolds", historyHolds_ ? 1 : 0);
   program.set("depthScaleBefore", depthScaleBefore_);
   program.set("weights", static_cast<int>(settings_.upsampleWeights));
+}
+
+void Upsampler::estimate(int bodies, const std::function<void(int)>& bindBody, const gl::Texture& depth) const {
+  estimated_.bind();
+  place_.bind(0);
+  colors_.bind(1);
+  before_.bind(2);
+  body_.bind(3);
+  depth.bind(13);
+  estimateProgram_.set("estimates", settings_.upsampleWeights == UpsampleWeights::lobe ? 1 : 0);
+  estimateProgram_.set("darkest", darkest_);
+  for (int body = 0; body < bodies; ++body) {
+    bindBody(body);
+    estimateProgram_.set("body", body);
+    fullscreen(estimateProgram_);
+  }
 }
 
 void Upsampler::shade(int bodies, const std::function<void(int)>& bindBody) const {
@@ -232,7 +248,7 @@ std::pair<unsigned, unsigned> Upsampler::recomputed() const {
 
 std::size_t Upsampler::bytes() const {
   const auto area = [](glm::ivec2 of) { return static_cast<std::size_t>(of.x) * static_cast<std::size_t>(of.y); };
-  return area(size_) * (5 * 16 + 8 + 2 * 3 * 16 + 4) + area(coarse_) * 3 * 16;
+  return area(size_) * (5 * 16 + 1 + 8 + 2 * 3 * 16 + 4) + area(coarse_) * 3 * 16;
 }
 
 }  // namespace chiaro

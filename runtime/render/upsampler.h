@@ -36,6 +36,8 @@ class Upsampler {
   const gl::Program& surfaceProgram() const { return surfaceProgram_; }
   void setBody(int body, const glm::mat4& clipFromWorldBefore) const;
 
+  /// What every pixel's light will be filtered by. Calls `bindBody` with each body from 0 on before it reads what is seen of it; `depth` is the frame's own.
+  void estimate(int bodies, const std::function<void(int)>& bindBody, const gl::Texture& depth) const;
   /// Calls `bindBody` with each body from 0 on before it shades what is seen of it.
   void shade(int bodies, const std::function<void(int)>& bindBody) const;
   void filter();
@@ -60,15 +62,15 @@ class Upsampler {
   void allocate(glm::ivec2 size, int cell);
   void setHistory(const gl::Program& program) const;
 
-  gl::Program surfaceProgram_, shadeProgram_, recomputeProgram_, filterProgram_, cutProgram_, listProgram_, composeProgram_;
+  gl::Program surfaceProgram_, estimateProgram_, shadeProgram_, recomputeProgram_, filterProgram_, cutProgram_, listProgram_, composeProgram_;
   glm::ivec2 size_{0}, coarse_{0};
   int cell_ = 0, frame_ = 0, now_ = 0;
   bool recomputes_ = false;
   unsigned budget_ = 0;
-  gl::Texture place_, colors_, albedos_, guide_, before_, quality_;
+  gl::Texture place_, colors_, before_, body_, albedos_, guide_, quality_;
   gl::Texture coarseDiffuse_, coarseReflected_, coarseGuide_;
   Kept kept_[2];
-  gl::Framebuffer surfaces_, coarseTarget_, filtered_[2], composed_;
+  gl::Framebuffer surfaces_, estimated_, coarseTarget_, filtered_[2], composed_;
   gl::Buffer urgencies_, pixels_;
   RenderSettings settings_;
   float darkest_ = 0.0f;

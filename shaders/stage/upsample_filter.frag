@@ -10,7 +10,7 @@
 
 layout(binding = 0) uniform usampler2D guideTexture;
 layout(binding = 1) uniform usampler2D albedosTexture;
-layout(binding = 2) uniform sampler2D beforeTexture;
+layout(binding = 2) uniform usampler2D beforeTexture;
 layout(binding = 7) uniform sampler2D coarseDiffuse;    // a: change since the frame before
 layout(binding = 8) uniform sampler2D coarseReflected;
 layout(binding = 9) uniform usampler2D coarseGuide;
@@ -53,7 +53,7 @@ void main() {
   quality = vec4(1.0, 0.0, 0.0, 0.0);
   if (g.depth >= 1.0) return;
   Albedos a = unpackAlbedos(texelFetch(albedosTexture, at, 0));
-  vec3 before = texelFetch(beforeTexture, at, 0).xyz;
+  vec3 before = positionBeforeOf(texelFetch(beforeTexture, at, 0));
 
   ivec2 size = textureSize(guideTexture, 0), coarse = textureSize(coarseGuide, 0);
   ivec2 base = ivec2(floor(vec2(at - jitter) / float(cell)));

@@ -33,7 +33,13 @@ Guide unpackGuide(uvec4 words) {
   return g;
 }
 
+const uint kNoBody = 255u;
 const uvec4 kNoGuide = uvec4(0x3f800000u, 0u, 0u, 0u);  // depth 1
+
+// Where a pixel was in the frame before (pixels, window depth), and the slope of its window depth, a pixel, in units of depthUnit().
+uvec4 packMotion(vec3 before, vec2 slope) { return uvec4(floatBitsToUint(before), packHalf2x16(clamp(slope, vec2(-6.0e4), vec2(6.0e4)))); }
+vec3 positionBeforeOf(uvec4 motion) { return uintBitsToFloat(motion.xyz); }
+vec2 slopeOf(uvec4 motion) { return unpackHalf2x16(motion.w); }
 
 // In window depth, the distance that a pixel spans there: x + y depth. In this unit the slope of a surface is that of its picture.
 float depthUnit(vec2 scale, float depth) { return scale.x + scale.y * depth; }

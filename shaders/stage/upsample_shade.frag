@@ -24,7 +24,7 @@ layout(binding = 3, rgba16f) uniform image2D qualityImage;
 uniform uint budget;
 #else
 #include "shaders/stage/upsample_history.glsl"
-layout(binding = 13) uniform sampler2D beforeTexture;
+layout(binding = 13) uniform usampler2D beforeTexture;
 layout(location = 0) out vec4 diffuseLight_;    // a: how much the frame before was off here
 layout(location = 1) out vec4 reflectedLight_;
 layout(location = 2) out uvec4 guide_;
@@ -75,7 +75,7 @@ void main() {
   imageStore(guideImage, at, words);
   imageStore(qualityImage, at, vec4(imageLoad(qualityImage, at).x, 0.0, 1.0, 0.0));
 #else
-  History h = historyAt(g, a.slope, texelFetch(beforeTexture, at, 0).xyz);
+  History h = historyAt(g, a.slope, positionBeforeOf(texelFetch(beforeTexture, at, 0)));
   // What was only interpolated then may be wrong without any change in the light.
   vec2 proof = min(2.0 * h.worth, vec2(1.0));
   proof *= proof;
