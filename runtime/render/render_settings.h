@@ -2,6 +2,7 @@
 /// How a Renderer draws a frame.
 
 #include <glm/glm.hpp>
+#include <optional>
 
 #include "assets/image/display.h"
 
@@ -34,8 +35,11 @@ struct RenderSettings {
   DebugView debugView = DebugView::none;
   int upsample = 1;                          ///< 2, 3 or 4: shade one point of a cell of n^2 and interpolate; blended surfaces are shaded in full
   UpsampleWeights upsampleWeights = UpsampleWeights::lobe;
+  std::optional<bool> upsampleEstimate;      ///< filter light as its ratio to an estimate that each pixel has of its own; unset: with lobe weights alone
   RecomputeBudget recompute;
 };
+
+inline bool estimatesWhenUpsampled(const RenderSettings& settings) { return settings.upsampleEstimate.value_or(settings.upsampleWeights == UpsampleWeights::lobe); }
 
 /// Of RenderSettings::upsample.
 inline constexpr int kLargestUpsample = 4;

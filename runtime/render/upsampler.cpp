@@ -39,8 +39,8 @@ gl::Program pass(const char* fragment, const std::vector<std::string>& defines =
 }
 
 bool shadeAlike(const RenderSettings& a, const RenderSettings& b) {
-  return a.upsample == b.upsample && a.upsampleWeights == b.upsampleWeights && a.shadows == b.shadows && a.energyCompensation == b.energyCompensation &&
-         a.lobes == b.lobes;
+  return a.upsample == b.upsample && a.upsampleWeights == b.upsampleWeights && estimatesWhenUpsampled(a) == estimatesWhenUpsampled(b) && a.shadows == b.shadows &&
+         a.energyCompensation == b.energyCompensation && a.lobes == b.lobes;
 }
 
 }  // namespace
@@ -134,7 +134,7 @@ void Upsampler::estimate(int bodies, const std::function<void(int)>& bindBody, c
   before_.bind(2);
   body_.bind(3);
   depth.bind(13);
-  estimateProgram_.set("estimates", settings_.upsampleWeights == UpsampleWeights::lobe ? 1 : 0);
+  estimateProgram_.set("estimates", estimatesWhenUpsampled(settings_) ? 1 : 0);
   estimateProgram_.set("darkest", darkest_);
   for (int body = 0; body < bodies; ++body) {
     bindBody(body);
@@ -153,7 +153,7 @@ void Upsampler::shade(int bodies, const std::function<void(int)>& bindBody) cons
   setHistory(shadeProgram_);
   shadeProgram_.set("jitter", jitter_);
   shadeProgram_.set("cell", cell_);
-  shadeProgram_.set("darkest", settings_.upsampleWeights == UpsampleWeights::lobe ? kDarkest * darkest_ : kDarkest / settings_.exposure);
+  shadeProgram_.set("darkest", estimatesWhenUpsampled(settings_) ? kDarkest * darkest_ : kDarkest / settings_.exposure);
   for (int body = 0; body < bodies; ++body) {
     bindBody(body);
     shadeProgram_.set("body", body);

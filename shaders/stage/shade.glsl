@@ -379,7 +379,8 @@ float throughCoat(Surface s) {
 }
 
 #if CLEARCOAT
-vec3 coatReflection(Surface s, Transfer t) {
+// The coat as a surface of its own that reflects all it can.
+Surface coatOf(Surface s) {
   s.n = shadingNormalTowards(s.ng, s.wo);
   s.bumped = false;
   s.kind = kGgx;
@@ -388,6 +389,11 @@ vec3 coatReflection(Surface s, Transfer t) {
   s.f0 = vec3(1.0);
   s.f90 = 1.0;
   s.diffuse = vec3(0.0);
+  return s;
+}
+
+vec3 coatReflection(Surface base, Transfer t) {
+  Surface s = coatOf(base);
   float smoothShare;
   vec3 reflected = ggxReflection(s, t, albedoAt(s.roughness, dot(s.n, s.wo)), smoothShare);
   vec3 diffusePart;

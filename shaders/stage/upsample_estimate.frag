@@ -1,6 +1,7 @@
 #version 450 core
-// Every pixel's guide, and an estimate of its light: from a few lobes behind one distance to what hides them. What is shaded is filtered as its ratio
-// to that, which changes little from pixel to pixel even where highlights and shadow edges do.
+// Every pixel's guide, and an estimate of its light: SG lights by the BRDF and their own shadows, the rest of the environment through a few lobes past
+// one distance to what hides them. What is shaded is filtered as its ratio to that, which changes little from pixel to pixel even where highlights and
+// shadow edges do.
 #include "shaders/stage/frame.glsl"
 #include "shaders/stage/geometry.glsl"
 #include "shaders/stage/shade.glsl"
@@ -34,7 +35,8 @@ Guide guideOf(Surface s, float depth) {
 #if CLEARCOAT
   // Of a coat and what lies under it, the sharper.
   if (s.coat > 0.0) {
-    SphericalGaussian coat = reflectionLobe(kGgx, clampAlpha(s.coatRoughness * s.coatRoughness), shadingNormalTowards(s.ng, s.wo), s.wo);
+    Surface top = coatOf(s);
+    SphericalGaussian coat = reflectionLobe(kGgx, top.alphaT, top.n, s.wo);
     if (coat.sharpness > lobe.sharpness) lobe = coat;
   }
 #endif
@@ -47,68 +49,63 @@ Guide guideOf(Surface s, float depth) {
   return g;
 }
 
-// What a lobe gathers: as lobeRadiance(), with the distance at the middle of all lobes.
-vec3 estimatedRadiance(Transfer t, vec3 axis, float sharpness, float distance) {
-  vec3 radiance = environmentMean(axis, sharpness);
-#if TERM_VECTORS > 0
-  if (!shadowed()) return radiance;
-  float own = ssdfVisibleFraction(distance, sharpness);
-  radiance *= own;
-  for (int l = 0; l < frame.counts.x; ++l) {
-    float productSharpness;
-    vec3 mean = lightMean(l, axis, sharpness, productSharpness);
-    if (largestOf(mean) < 1.0e-3 * frame.sgLights[l].amplitude.r) continue;
-    float lightSharpness = frame.sgLights[l].axisSharpness.w;
-    float lightDistance;
-    storedLightShare(t, l, lightSharpness, lightDistance);
-    float towards = lightSharpness / (sharpness + lightSharpness);
-    radiance += mean * (ssdfVisibleFraction(mix(distance, lightDistance, towards), productSharpness) - own);
-  }
-  radiance = max(radiance, vec3(0.0));
-#endif
-  return radiance;
-}
-
-vec3 estimatedReflection(Surface s, Transfer t, int kind, float alpha, vec3 n) {
-  bool exponent = modelHasExponent(kind);
-  float width = exponent ? 2.0 / (alpha * alpha) - 2.0 : alpha;
-  float distance = shadowed() ? ssdfAt(t, reflect(-s.wo, n)) : kHalfPi;
+// Mean of what the view's lobes see of the environment without its SG lights, past the distance at their middle.
+vec3 estimatedMean(Surface s, Transfer t) {
+  float alpha = sqrt(s.alphaT * s.alphaB);
+  float width = modelHasExponent(s.kind) ? 2.0 / (alpha * alpha) - 2.0 : alpha;
+  float distance = shadowed() ? ssdfAt(t, reflect(-s.wo, s.n)) : kHalfPi;
   vec3 sum = vec3(0.0);
   float weights = 0.0;
   for (int i = 0; i < kEstimateLobes; ++i) {
-    vec2 lobe = ndfMixtureLobe(kind, width, kEstimateLobes, i);
+    vec2 lobe = ndfMixtureLobe(s.kind, width, kEstimateLobes, i);
     if (!(lobe.x > 0.0)) continue;
-    SphericalGaussian warped = sgWarpIsotropic(sphericalGaussian(n, lobe.y, 1.0), s.wo);
+    SphericalGaussian warped = sgWarpIsotropic(sphericalGaussian(s.n, lobe.y, 1.0), s.wo);
+    vec3 radiance = environmentMean(warped.axis, warped.sharpness);
+    for (int l = 0; l < frame.counts.x; ++l) {
+      float productSharpness;
+      radiance -= lightMean(l, warped.axis, warped.sharpness, productSharpness);
+    }
+    float seen = horizonShare(s, warped.axis, warped.sharpness);
+    if (shadowed()) seen *= ssdfVisibleFraction(distance, warped.sharpness);
     float weight = lobe.x * sgUnitIntegral(lobe.y);
-    sum += weight * estimatedRadiance(t, warped.axis, warped.sharpness, distance);
+    sum += (weight * seen) * max(radiance, vec3(0.0));
     weights += weight;
   }
   return sum / max(weights, 1.0e-20);
 }
 
-vec3 estimatedDiffuse(vec3 n) {
+// SG lights by the BRDF itself: too few lobes have no tails.
+vec3 estimatedReflection(Surface s, Transfer t, vec3 albedo) {
+  vec3 sum = albedo * estimatedMean(s, t);
+  for (int l = 0; l < frame.counts.x; ++l) sum += lightReflection(s, t, l);
+  return sum;
+}
+
+vec3 estimatedDiffuse(Surface s, Transfer t) {
   float basis[25];
-  shEvaluate(n, basis);
+  shEvaluate(s.n, basis);
   vec3 sum = vec3(0.0);
   for (int i = 0; i < 25; ++i) sum += basis[i] * frame.irradiance[i].rgb;
   sum = max(sum, vec3(0.0));
   for (int l = 0; l < frame.counts.x; ++l) {
     vec4 light = frame.sgLights[l].axisSharpness;
-    sum += frame.sgLights[l].amplitude.rgb * (sgUnitIntegral(light.w) * clampedCosineMean(dot(n, light.xyz), light.w));
+    float cosineMean = clampedCosineMean(dot(s.n, light.xyz), light.w);
+    if (cosineMean < 1.0e-5) continue;
+    float v = lightShare(t, l, light.w) * horizonShare(s, light.xyz, light.w);
+    sum += frame.sgLights[l].amplitude.rgb * (sgUnitIntegral(light.w) * cosineMean * v);
   }
   return sum * kOneOverPi;
 }
 
-void multiplyByEstimate(Surface s, Transfer t, inout Albedos a) {
-  vec3 reflection = estimatedReflection(s, t, s.kind, sqrt(s.alphaT * s.alphaB), s.n);
+// In units of the darkest, so that what is kept is light whatever the environment is.
+void addEstimate(Surface s, Transfer t, inout Albedos a) {
+  vec3 reflection = estimatedReflection(s, t, a.reflected);
 #if CLEARCOAT
   float coat = 1.0 - throughCoat(s);
-  if (coat > 0.0)
-    reflection = mix(reflection, estimatedReflection(s, t, kGgx, clampAlpha(s.coatRoughness * s.coatRoughness), shadingNormalTowards(s.ng, s.wo)), coat);
+  if (coat > 0.0) reflection = mix(reflection, estimatedReflection(coatOf(s), t, a.reflected), coat);
 #endif
-  // In units of the darkest, so that what is kept is light whatever the environment is.
-  a.diffuse *= estimatedDiffuse(s.n) / darkest + 1.0;
-  a.reflected *= reflection / darkest + 1.0;
+  a.diffuse *= estimatedDiffuse(s, t) / darkest + 1.0;
+  a.reflected += reflection / darkest;
 }
 
 void main() {
@@ -125,7 +122,7 @@ void main() {
   Albedos a;
   surfaceAlbedo(s, a.diffuse, a.reflected);
   a.slope = slopeOf(texelFetch(beforeTexture, at, 0));
-  if (estimates) multiplyByEstimate(s, transferAt(corners, barycentric), a);
+  if (estimates) addEstimate(s, transferAt(corners, barycentric), a);
   albedos = packAlbedos(a);
   guide = packGuide(guideOf(s, texelFetch(depthTexture, at, 0).r));
 }

@@ -45,6 +45,7 @@ TEST(ReportUpsampling, RefusesWhatItCannotCompare) {
   };
   refused({"--upsample", "1"}, 2, "--upsample: 1 is what the others are compared with");
   refused({"--material", "ggx"}, 2, "\"ggx\" is not a model and its width");
+  refused({"--variant", "lobes"}, 2, "--variant: \"lobes\" is none: give one of lobe, normal,");
   refused({"--recompute-budget", "2ms"}, 2, "figures would depend on the machine");
   refused({"--recompute-budget", "nan%"}, 2, "is not a budget");
   refused({"--frames", "10000", "--size", "1920x1080"}, 2, "need more than 8 GB");

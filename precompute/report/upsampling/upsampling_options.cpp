@@ -28,6 +28,18 @@ StudyMaterial materialFrom(const std::string& text) {
   return {*model, parameter};
 }
 
+std::string namesOf(const std::vector<StudyVariant>& variants) {
+  std::string names;
+  for (const auto& one : variants) names += (names.empty() ? "" : ", ") + one.name;
+  return names;
+}
+
+StudyVariant variantFrom(const std::string& name) {
+  for (const auto& one : allVariants())
+    if (one.name == name) return one;
+  throw usageError("--variant", "\"" + name + "\" is none", "give one of " + namesOf(allVariants()));
+}
+
 void requireAngle(float value, const char* option) {
   if (!(std::abs(value) <= 360.0f)) throw usageError(option, "is out of range", "give degrees such as 0.5");
 }
@@ -41,6 +53,10 @@ void declareUpsamplingOptions(CLI::App& app, UpsamplingOptions& options) {
   app.add_option("--json", options.json, "Write the figures here")->type_name("FILE");
   app.add_option("--material", options.materials, "A reflectance for the whole scene, such as ggx=0.1; may be repeated. Default: ten of them")
       ->type_name("MODEL=WIDTH")
+      ->allow_extra_args(false);
+  app.add_option("--variant", options.variants,
+                 "What is compared with shading every pixel: " + namesOf(allVariants()) + "; may be repeated. Default: the first " + std::to_string(standardVariants().size()))
+      ->type_name("NAME")
       ->allow_extra_args(false);
   app.add_option("-e,--environment", settings.environment, "Light, as for chiaro-view")->type_name("NAME|FILE")->capture_default_str();
   app.add_option("--size", options.size, "Picture size in pixels")->type_name("WxH")->capture_default_str();
@@ -65,6 +81,8 @@ void finishUpsamplingOptions(UpsamplingOptions& options) {
   auto& settings = options.settings;
   for (const auto& text : options.materials) settings.materials.push_back(materialFrom(text));
   if (settings.materials.empty()) settings.materials = standardMaterials();
+  for (const auto& name : options.variants) settings.variants.push_back(variantFrom(name));
+  if (settings.variants.empty()) settings.variants = standardVariants();
   settings.size = sizeFrom(options.size);
   settings.camera = parseCameraSpec(options.camera);
   requireUpsample(settings.upsample, "--upsample");

@@ -20,7 +20,7 @@ struct UpsamplingOptions {
   UpsamplingSettings settings;
   bool quiet = false;
 
-  std::vector<std::string> materials;  ///< as given
+  std::vector<std::string> materials, variants;  ///< as given
   std::string size = "480x270", camera = "auto", recompute = "10%";
 };
 

@@ -199,17 +199,29 @@ std::vector<StudyMaterial> standardMaterials() {
   return all;
 }
 
+std::vector<StudyVariant> standardVariants() {
+  return {{"lobe", UpsampleWeights::lobe, true, false},
+          {"normal", UpsampleWeights::normal, false, false},
+          {"bilinear", UpsampleWeights::bilinear, false, false},
+          {"lobe_recomputed", UpsampleWeights::lobe, true, true},
+          {"normal_recomputed", UpsampleWeights::normal, false, true}};
+}
+
+std::vector<StudyVariant> allVariants() {
+  auto all = standardVariants();
+  all.push_back({"lobe_plain", UpsampleWeights::lobe, false, false});
+  all.push_back({"normal_estimated", UpsampleWeights::normal, true, false});
+  all.push_back({"bilinear_estimated", UpsampleWeights::bilinear, true, false});
+  all.push_back({"normal_estimated_recomputed", UpsampleWeights::normal, true, true});
+  return all;
+}
+
 std::vector<MaterialResult> studyUpsampling(const BakedScene& baked, const UpsamplingSettings& study, const StudyPicture& picture,
                                             const StudyProgress& progress) {
   const Environment environment = loadEnvironment(study.environment);
   SgEnvironmentSettings prefilter;
   prefilter.threads = study.threads;
   const SgEnvironment light = prepareEnvironment(environment, prefilter);
-  const std::vector<StudyVariant> variants{{"lobe", UpsampleWeights::lobe, 0.0f},
-                                           {"normal", UpsampleWeights::normal, 0.0f},
-                                           {"bilinear", UpsampleWeights::bilinear, 0.0f},
-                                           {"lobe_recomputed", UpsampleWeights::lobe, study.recompute},
-                                           {"normal_recomputed", UpsampleWeights::normal, study.recompute}};
   BakedScene named = baked;
   nameDefaultMaterial(named.scene);
   const Path path(named.scene, study);
@@ -239,11 +251,12 @@ std::vector<MaterialResult> studyUpsampling(const BakedScene& baked, const Upsam
     const Costs fullCosts = draw(renderer, path, settings, study, report("full"), [&](std::size_t, Shown shown) { full.push_back(std::move(shown)); });
     show("full", settings);
     MaterialResult result{material, medianOf(fullCosts, "total"), {}};
-    for (const auto& variant : variants) {
+    for (const auto& variant : study.variants) {
       RenderSettings upsampled = settings;
       upsampled.upsample = study.upsample;
       upsampled.upsampleWeights = variant.weights;
-      upsampled.recompute = {.share = variant.recompute, .milliseconds = 0.0f};
+      upsampled.upsampleEstimate = variant.estimate;
+      upsampled.recompute = {.share = variant.recomputes ? study.recompute : 0.0f, .milliseconds = 0.0f};
       renderer.setEnvironment(light);  // no history is left
       Comparison comparison(full, study);
       const Costs costs = draw(renderer, path, upsampled, study, report(variant.name), [&](std::size_t f, Shown shown) { comparison.add(f, std::move(shown)); });

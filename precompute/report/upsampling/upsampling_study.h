@@ -28,11 +28,18 @@ std::vector<StudyMaterial> standardMaterials();
 struct StudyVariant {
   std::string name;
   UpsampleWeights weights = UpsampleWeights::lobe;
-  float recompute = 0.0f;  ///< most of the pixels, 0..1
+  bool estimate = true;    ///< RenderSettings::upsampleEstimate
+  bool recomputes = false; ///< UpsamplingSettings::recompute of the pixels at most
 };
+
+/// Lobe weights with what belongs to them, the two baselines, and both weights with recomputation.
+std::vector<StudyVariant> standardVariants();
+/// Those and what tells the weights and the estimate apart: lobe_plain, normal_estimated, bilinear_estimated, normal_estimated_recomputed.
+std::vector<StudyVariant> allVariants();
 
 struct UpsamplingSettings {
   std::vector<StudyMaterial> materials;
+  std::vector<StudyVariant> variants;
   std::string environment = "sunny";
   CameraSpec camera;
   glm::ivec2 size{480, 270};

@@ -8,12 +8,12 @@ namespace chiaro {
 std::string upsamplingTable(const std::vector<MaterialResult>& results) {
   std::string text;
   char line[256];
-  std::snprintf(line, sizeof line, "%-16s %-18s %8s %7s %7s %7s %8s %9s %9s %8s %10s %7s\n", "material", "variant", "rmse", "psnr", "whole", "lowest", "flip", "flicker",
+  std::snprintf(line, sizeof line, "%-16s %-27s %8s %7s %7s %7s %8s %9s %9s %8s %10s %7s\n", "material", "variant", "rmse", "psnr", "whole", "lowest", "flip", "flicker",
                 "change", "shaded", "of objects", "time");
   text += line;
   for (const auto& material : results) {
     for (const auto& one : material.variants) {
-      std::snprintf(line, sizeof line, "%-16s %-18s %8.5f %7.2f %7.2f %7.2f %8.4f %+9.5f %9.5f %7.1f%% %9.1f%% %7.3f\n", material.material.name().c_str(), one.variant.name.c_str(),
+      std::snprintf(line, sizeof line, "%-16s %-27s %8.5f %7.2f %7.2f %7.2f %8.4f %+9.5f %9.5f %7.1f%% %9.1f%% %7.3f\n", material.material.name().c_str(), one.variant.name.c_str(),
                     one.rmse, one.psnr, one.wholePsnr, one.lowestPsnr, one.flip, one.flicker, one.changeError, 100.0 * one.recomputed, 100.0 * one.recomputedOfObjects,
                     one.milliseconds / material.fullMilliseconds);
       text += line;
