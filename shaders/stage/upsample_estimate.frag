@@ -1,6 +1,6 @@
 #version 450 core
-// Every pixel's guide, and an estimate of its light: SG lights by the BRDF and their own shadows, the rest of the environment through a few lobes past
-// one distance to what hides them. What is shaded is filtered as its ratio to that, which changes little from pixel to pixel even where highlights and
+// Every pixel's guide, and an estimate of its light: SG lights sharper than the reflection by the BRDF and their own shadows, the rest of the
+// environment through a few lobes past one distance to what hides them. What is shaded is filtered as its ratio to that, which changes little from pixel to pixel even where highlights and
 // shadow edges do.
 #include "shaders/stage/frame.glsl"
 #include "shaders/stage/geometry.glsl"
@@ -49,7 +49,18 @@ Guide guideOf(Surface s, float depth) {
   return g;
 }
 
-// Mean of what the view's lobes see of the environment without its SG lights, past the distance at their middle.
+// Share of an SG light that the BRDF itself gives: of lights sharper than the reflection, where few lobes have no tails; broader ones it would blur.
+float directLight(Surface s, int l) { return smoothstep(0.5, 2.0, 2.0 * s.alphaT * s.alphaB * frame.sgLights[l].axisSharpness.w); }
+
+// Visible share of the product of a lobe and an SG light; `distance` is the SSDF at the lobe's axis.
+float shareBetween(Transfer t, int l, SphericalGaussian lobe, float productSharpness, float distance) {
+  float lightSharpness = frame.sgLights[l].axisSharpness.w;
+  float lightDistance;
+  storedLightShare(t, l, lightSharpness, lightDistance);
+  return ssdfVisibleFraction(mix(distance, lightDistance, lightSharpness / (lobe.sharpness + lightSharpness)), productSharpness);
+}
+
+// Mean of what the view's lobes see, past the distance at their middle, but for what SG lights give directly.
 vec3 estimatedMean(Surface s, Transfer t) {
   float alpha = sqrt(s.alphaT * s.alphaB);
   float width = modelHasExponent(s.kind) ? 2.0 / (alpha * alpha) - 2.0 : alpha;
@@ -60,24 +71,29 @@ vec3 estimatedMean(Surface s, Transfer t) {
     vec2 lobe = ndfMixtureLobe(s.kind, width, kEstimateLobes, i);
     if (!(lobe.x > 0.0)) continue;
     SphericalGaussian warped = sgWarpIsotropic(sphericalGaussian(s.n, lobe.y, 1.0), s.wo);
-    vec3 radiance = environmentMean(warped.axis, warped.sharpness);
+    float own = shadowed() ? ssdfVisibleFraction(distance, warped.sharpness) : 1.0;
+    vec3 radiance = environmentMean(warped.axis, warped.sharpness) * own;
     for (int l = 0; l < frame.counts.x; ++l) {
       float productSharpness;
-      radiance -= lightMean(l, warped.axis, warped.sharpness, productSharpness);
+      vec3 mean = lightMean(l, warped.axis, warped.sharpness, productSharpness);
+      float through = 1.0 - directLight(s, l);
+      bool shows = through > 0.0 && largestOf(mean) > 1.0e-4 * frame.sgLights[l].amplitude.r;
+      float seen = shadowed() && shows ? shareBetween(t, l, warped, productSharpness, distance) : own;
+      radiance += mean * (through * seen - own);
     }
-    float seen = horizonShare(s, warped.axis, warped.sharpness);
-    if (shadowed()) seen *= ssdfVisibleFraction(distance, warped.sharpness);
     float weight = lobe.x * sgUnitIntegral(lobe.y);
-    sum += (weight * seen) * max(radiance, vec3(0.0));
+    sum += (weight * horizonShare(s, warped.axis, warped.sharpness)) * max(radiance, vec3(0.0));
     weights += weight;
   }
   return sum / max(weights, 1.0e-20);
 }
 
-// SG lights by the BRDF itself: too few lobes have no tails.
 vec3 estimatedReflection(Surface s, Transfer t, vec3 albedo) {
   vec3 sum = albedo * estimatedMean(s, t);
-  for (int l = 0; l < frame.counts.x; ++l) sum += lightReflection(s, t, l);
+  for (int l = 0; l < frame.counts.x; ++l) {
+    float direct = directLight(s, l);
+    if (direct > 0.0) sum += direct * lightReflection(s, t, l);
+  }
   return sum;
 }
 

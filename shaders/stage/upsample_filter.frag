@@ -31,11 +31,11 @@ const float kLeastLike = 1.0e-4;
 const float kLeastShare = 1.0e-6;
 // A sample's worth for a pixel falls with their distance, in pixels: of what is right there 1, of what is interpolated the floor.
 const float kWorthDeviation = 0.5;
-const float kWorthFloor = 0.005;
+const float kWorthFloor = 0.02;
 const float kLargestWorth = 1.5;
 const float kFade = 0.98;          // of the frame before, a frame
 const float kTrusted = 0.97;       // a pixel of more weight than that asks for nothing
-const float kChangeDeviation = 0.4;  // relative
+const float kChangeDeviation = 0.2;  // relative
 
 ivec2 sampleAt(ivec2 coarseAt, ivec2 coarse, ivec2 size) { return min(clamp(coarseAt, ivec2(0), coarse - 1) * cell + jitter, size - 1); }
 
