@@ -8,8 +8,7 @@ const int kModelLayers[kModelCount] = MODEL_LAYERS;
 
 // Widths as alpha; an exponent is n = 2 / alpha^2 - 2.
 ReflectanceModel modelOf(int kind, float alphaT, float alphaB) {
-  bool exponent = modelHasExponent(kind);
-  return reflectanceModel(kind, exponent ? 2.0 / (alphaT * alphaT) - 2.0 : alphaT, exponent ? 2.0 / (alphaB * alphaB) - 2.0 : alphaB);
+  return reflectanceModel(kind, modelParameter(kind, alphaT), modelParameter(kind, alphaB));
 }
 
 // Of an anisotropic surface the mean of both directions'.

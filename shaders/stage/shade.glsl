@@ -64,6 +64,11 @@ vec3 fresnelColor(Surface s, float weight) { return s.f0 * (1.0 - weight) + s.f9
 bool anisotropic(Surface s) { return s.alphaT != s.alphaB; }
 vec3 tangentFrame(Surface s, vec3 w) { return vec3(dot(w, s.t), dot(w, s.b), dot(w, s.n)); }
 
+// What a model is given for a width as alpha: that, or the exponent as wide, as far as models go.
+float modelParameter(int kind, float alpha) {
+  return modelHasExponent(kind) ? clamp(2.0 / (alpha * alpha) - 2.0, kMinExponent, kMaxExponent) : alpha;
+}
+
 vec3 samplePoint2(sampler2D table, vec2 unit, out vec2 at) {
   vec2 size = vec2(textureSize(table, 0));
   at = (unit * (size - 1.0) + 0.5) / size;

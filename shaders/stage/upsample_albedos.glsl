@@ -1,4 +1,5 @@
-// What shaded radiance is divided by before it is filtered, and multiplied with after: diffuse and reflected light hardly know the material then.
+// What shaded radiance is divided by before it is filtered, and multiplied with after: albedos times what upsample_estimate.frag expects of the light,
+// so that diffuse and reflected light hardly know the material and its surroundings then.
 struct Albedos {
   vec3 diffuse;
   vec3 reflected;
@@ -7,7 +8,8 @@ struct Albedos {
 
 // As square roots: what mirrors the sun is far beyond the range of a half.
 const float kLargestRoot = 6.0e4;
-vec3 packedRoot(vec3 x) { return min(sqrt(max(x, vec3(0.0))), vec3(kLargestRoot)); }
+float packedRoot(float x) { return x > 0.0 ? min(sqrt(x), kLargestRoot) : 0.0; }  // of what is not a number too
+vec3 packedRoot(vec3 x) { return vec3(packedRoot(x.r), packedRoot(x.g), packedRoot(x.b)); }
 
 uvec4 packAlbedos(Albedos a) {
   vec3 diffuse = packedRoot(a.diffuse), reflected = packedRoot(a.reflected);

@@ -1,11 +1,10 @@
 #version 450 core
-// Every pixel's guide, and an estimate of its light: SG lights sharper than the reflection by the BRDF and their own shadows, the rest of the
-// environment through a few lobes past one distance to what hides them. What is shaded is filtered as its ratio to that, which changes little from pixel to pixel even where highlights and
-// shadow edges do.
+// Every pixel's guide, and an estimate of its light. Reflected: SG lights sharper than the reflection by the BRDF and their own shadows, the rest of
+// the environment through a few lobes past one distance to what hides them. Diffuse: SG lights with their shadows, the rest unhidden. What is shaded
+// is filtered as its ratio to that, which changes little from pixel to pixel even where highlights and shadow edges do.
 #include "shaders/stage/frame.glsl"
 #include "shaders/stage/geometry.glsl"
 #include "shaders/stage/shade.glsl"
-#include "shaders/lobe/upsampling.glsl"
 #include "shaders/stage/upsample_guide.glsl"
 #include "shaders/stage/upsample_surface.glsl"
 #include "shaders/stage/upsample_albedos.glsl"
@@ -20,7 +19,7 @@ layout(location = 0) out uvec4 albedos;
 layout(location = 1) out uvec4 guide;
 
 uniform int body;
-uniform bool estimates;  // else albedos alone
+uniform bool estimates;  // else divisors are albedos
 uniform float darkest;   // light that hardly shows, of this environment: not of the exposure, which may change while history is kept
 
 const int kEstimateLobes = 3;
@@ -28,10 +27,7 @@ const int kEstimateLobes = 3;
 Guide guideOf(Surface s, float depth) {
   Guide g;
   mat3 turn = mat3(frame.environmentFromWorld);
-  float alphaT = s.alphaT, alphaB = s.alphaB;
-  bool exponent = modelHasExponent(s.kind);
-  float width = min(alphaT, alphaB);
-  SphericalGaussian lobe = reflectionLobe(s.kind, exponent ? 2.0 / (width * width) - 2.0 : width, s.n, s.wo);
+  SphericalGaussian lobe = reflectionLobe(s.kind, modelParameter(s.kind, narrowerAlpha(s)), s.n, s.wo);
 #if CLEARCOAT
   // Of a coat and what lies under it, the sharper.
   if (s.coat > 0.0) {
@@ -50,7 +46,13 @@ Guide guideOf(Surface s, float depth) {
 }
 
 // Share of an SG light that the BRDF itself gives: of lights sharper than the reflection, where few lobes have no tails; broader ones it would blur.
-float directLight(Surface s, int l) { return smoothstep(0.5, 2.0, 2.0 * s.alphaT * s.alphaB * frame.sgLights[l].axisSharpness.w); }
+// A sheen's share of the light is its own.
+float brdfShare(Surface s, int l) {
+#if SHEEN
+  if (largestOf(s.sheen) > 0.0) return 0.0;
+#endif
+  return smoothstep(0.5, 2.0, 2.0 * s.alphaT * s.alphaB * frame.sgLights[l].axisSharpness.w);
+}
 
 // Visible share of the product of a lobe and an SG light; `distance` is the SSDF at the lobe's axis.
 float shareBetween(Transfer t, int l, SphericalGaussian lobe, float productSharpness, float distance) {
@@ -62,8 +64,7 @@ float shareBetween(Transfer t, int l, SphericalGaussian lobe, float productSharp
 
 // Mean of what the view's lobes see, past the distance at their middle, but for what SG lights give directly.
 vec3 estimatedMean(Surface s, Transfer t) {
-  float alpha = sqrt(s.alphaT * s.alphaB);
-  float width = modelHasExponent(s.kind) ? 2.0 / (alpha * alpha) - 2.0 : alpha;
+  float width = modelParameter(s.kind, sqrt(s.alphaT * s.alphaB));
   float distance = shadowed() ? ssdfAt(t, reflect(-s.wo, s.n)) : kHalfPi;
   vec3 sum = vec3(0.0);
   float weights = 0.0;
@@ -76,7 +77,7 @@ vec3 estimatedMean(Surface s, Transfer t) {
     for (int l = 0; l < frame.counts.x; ++l) {
       float productSharpness;
       vec3 mean = lightMean(l, warped.axis, warped.sharpness, productSharpness);
-      float through = 1.0 - directLight(s, l);
+      float through = 1.0 - brdfShare(s, l);
       bool shows = through > 0.0 && largestOf(mean) > 1.0e-4 * frame.sgLights[l].amplitude.r;
       float seen = shadowed() && shows ? shareBetween(t, l, warped, productSharpness, distance) : own;
       radiance += mean * (through * seen - own);
@@ -91,7 +92,7 @@ vec3 estimatedMean(Surface s, Transfer t) {
 vec3 estimatedReflection(Surface s, Transfer t, vec3 albedo) {
   vec3 sum = albedo * estimatedMean(s, t);
   for (int l = 0; l < frame.counts.x; ++l) {
-    float direct = directLight(s, l);
+    float direct = brdfShare(s, l);
     if (direct > 0.0) sum += direct * lightReflection(s, t, l);
   }
   return sum;

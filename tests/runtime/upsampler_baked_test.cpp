@@ -73,11 +73,13 @@ TEST(UpsamplerBaked, StaysFiniteAtTheExtremes) {
   Material exponent = metal(0.5f);
   exponent.reflectance = Reflectance::blinnPhong;
   exponent.reflectanceWidth = glm::vec2(1e6f);
+  Material flat = metal(1.0f);  // exponent 0 before models bound it
+  flat.reflectance = Reflectance::blinnPhong;
   Material coated = metal(1.0f);
   coated.clearcoatFactor = 1.0f;
   coated.clearcoatRoughness = 0.0f;
   Renderer renderer(ball());
-  for (const Material& material : {metal(0.0f), metal(1.0f), matte(), exponent, coated}) {
+  for (const Material& material : {metal(0.0f), metal(1.0f), matte(), exponent, flat, coated}) {
     renderer.setMaterials({material});
     for (const char* light : {"sunny", "black"}) {
       renderer.setEnvironment(environment(light));
